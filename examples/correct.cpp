@@ -18,6 +18,7 @@
 #include "csv_options.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
+#include "payload_option.hpp"
 #include "program_correction.hpp"
 #include "vernier/compensation/correct_path.hpp"
 #include "vernier/core/same_value.hpp"
@@ -41,6 +42,7 @@ struct Settings {
   bool branches = false;  ///< all branches of each target instead of a path
   bool radius = true;     ///< the radius of 95 % of each command
   std::optional<double> temperature{};
+  support::PayloadOption payload{};
   double tolerance_mm = 0.05, max_step_deg = 30;
   std::vector<double> start{};
   std::vector<std::string> hold{};  ///< joints that stay, q1_m=1.2
@@ -254,7 +256,8 @@ void list_branches(const vn::InControllerJoints<vn::CalibratedRobot<N>>& arm, co
 template <int N>
 support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedModel& model) {
   const vn::CalibratedRobot<N> saved = model.as<N>();
-  const vn::CalibratedRobot<N> robot = settings.temperature ? saved.at_temperature(*settings.temperature) : saved;
+  const vn::CalibratedRobot<N> robot =
+      support::carrying(settings.temperature ? saved.at_temperature(*settings.temperature) : saved, settings.payload);
   const std::vector<vn::PathTarget<N>> targets = read_targets(settings, robot);
   const vn::InControllerJoints<vn::CalibratedRobot<N>> arm = robot.in_controller_joints();
   support::CorrectionReport report{.robot = robot.name(),
@@ -386,6 +389,7 @@ int run(support::Program& program) {
                      "temperature of the arm [deg C], for a model that changes with it; by default the mean of its "
                      "measurements",
                      "T");
+  settings.payload.add_to(program);
   program.parse("", "write the commands to this file", "FILE");
   settings.out = program.common().out;
   settings.approach = !no_approach;
@@ -394,8 +398,9 @@ int run(support::Program& program) {
   if (settings.targets.empty() == in_place.program.empty())
     throw support::UsageError("either --targets or --program is required");
   if (!in_place.program.empty())
-    return support::correct_program(in_place, {settings.model, settings.out, program.common().json,
-                                               settings.temperature, settings.start, settings.approach});
+    return support::correct_program(
+        in_place, {settings.model, settings.out, program.common().json, settings.temperature, settings.payload,
+                   settings.start, settings.approach});
 
   const vn::SavedModel model = vn::read_model(settings.model);
   const support::CorrectionReport report =

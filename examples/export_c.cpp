@@ -10,6 +10,7 @@
 
 #include "cli.hpp"
 #include "json_file.hpp"
+#include "payload_option.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/data_error.hpp"
 #include "vernier/io/export_c.hpp"
@@ -39,12 +40,18 @@ int run(support::Program& program) {
   program.add_option("--results", results,
                      "what calibrate wrote by --json, in place of the held-out error that the model keeps", "FILE");
   program.add_setting("--name", name, "what all names in the file begin with", "NAME");
+  support::PayloadOption payload;
+  payload.add_to(program);
   program.parse("", "write the C header to this file", "FILE");
   const std::string out = program.common().out;
   if (out.empty()) throw support::UsageError("--out is required");
 
-  const vn::SavedModel saved = vn::read_model(model);
+  vn::SavedModel saved = vn::read_model(model);
   vn::CExport options{.name = name};
+  if (payload.mass) {
+    if (!saved.states_payload()) support::refuse_payload();
+    saved = saved.carrying(payload.payload());
+  }
   if (!results.empty()) options.held_out_error = held_out_error(results, saved);
   const std::string source = vn::c_source(saved, options);
   if (const double known = saved.provenance().held_out_error; results.empty() && known > 0)

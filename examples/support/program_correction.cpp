@@ -193,7 +193,8 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
     throw std::runtime_error(
         fmt::format("{}: an arm of {} joints; programs are corrected for arms of 6", input.model, model.dof()));
   const vn::CalibratedRobot<6> saved = model.as<6>();
-  const vn::CalibratedRobot<6> robot = input.temperature ? saved.at_temperature(*input.temperature) : saved;
+  const vn::CalibratedRobot<6> robot =
+      carrying(input.temperature ? saved.at_temperature(*input.temperature) : saved, input.payload);
   vn::CorrectedProgram outcome =
       correct_for_controller(options.controller, input.model, program, robot, program_options(options, input, program));
   for (vn::Uncorrected& one : outcome.uncorrected) one.reason += remedy(one.missing);

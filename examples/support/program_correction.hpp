@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "payload_option.hpp"
 
 namespace support {
 
@@ -32,6 +33,7 @@ struct CorrectionInput {
   std::string out{};                    ///< file to be written
   std::string json{};                   ///< results; empty: none
   std::optional<double> temperature{};  ///< of the arm [deg C]
+  PayloadOption payload{};              ///< what it carries
   std::vector<double> start{};          ///< joint values before the first target [rad]
   bool approach = true;                 ///< whether commands are executed in the order of the text
 };

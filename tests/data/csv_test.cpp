@@ -137,6 +137,24 @@ TEST_F(Csv, TemperaturesAreReadAndWritten) {
       std::string::npos);
 }
 
+TEST_F(Csv, PayloadsAreReadAndWritten) {
+  const auto data = read_dataset<1>(file("q1_rad,x_mm,y_mm,z_mm,payload_kg\n1,0,0,0,2.5\n2,0,0,0,0\n"));
+  ASSERT_EQ(data.payloads().rows(), 2);
+  EXPECT_EQ(data.payloads().col(0), Eigen::Vector2d(2.5, 0));
+  EXPECT_TRUE(std::isnan(data.payloads()(0, 1)) && std::isnan(data.payloads()(1, 3)));
+  write_dataset(in_folder("again.csv"), data.rows(std::array<Index, 1>{1}));
+  EXPECT_EQ(read_dataset<1>(in_folder("again.csv")).payloads()(0, 0), 0);
+
+  const auto centred = read_dataset<1>(
+      file("q1_rad,x_mm,y_mm,z_mm,payload_z_m,payload_kg,payload_x_mm,payload_y_mm\n1,0,0,0,0.25,5,10,-20\n"));
+  EXPECT_EQ(centred.payloads(), (MatrixX{{5, 0.01, -0.02, 0.25}}));
+  write_dataset(in_folder("again.csv"), centred);
+  EXPECT_EQ(read_dataset<1>(in_folder("again.csv")).payloads(), centred.payloads());
+  EXPECT_EQ(read_dataset<1>(file("q1_rad,x_mm,y_mm,z_mm\n1,0,0,0\n")).payloads().rows(), 0);
+  EXPECT_NE(complaint("q1_rad,q2_rad,x_mm,y_mm,z_mm,payload_kg\n1,2,0,0,0,-1\n").find("line 2, column payload_kg"),
+            std::string::npos);
+}
+
 TEST_F(Csv, ReadsPositions) {
   const auto data = read_dataset<2>(file("q1_rad,q2_rad,x_mm,y_mm,z_mm\n0.5,-1.25,100,-200,300\n1,2,3,4,5\n"));
   expect_first_row(data);

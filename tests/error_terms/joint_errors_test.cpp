@@ -480,15 +480,19 @@ TEST(JointErrors, CommonTermsHaveTheSameNames) {
 
 TEST(JointTerms, BlocksAreMadeFromTheirParameters) {
   using Kind = vn::JointTermBlock::Kind;
-  const vn::DhChain<3> chain({{}, {}, {}});
-  const std::map<Kind, std::vector<double>> parameters{
-      {Kind::gravity, {0.6, 0, -0.8}}, {Kind::hysteresis, {0.02, 0.3}}, {Kind::tilt, {0, -1, 0}}};
-  const std::map<Kind, Index> sizes{
-      {Kind::gear_ratio, 3}, {Kind::coupling, 2}, {Kind::gravity, 6}, {Kind::hysteresis, 6}, {Kind::tilt, 18}};
+  const vn::DhChain<3> chain({{.joint = vn::JointType::prismatic}, {}, {}});
+  const std::map<Kind, std::vector<double>> parameters{{Kind::payload, {0, 0, -1, 2, 0, 0, 0.1}},
+                                                       {Kind::straightness, {2, -0.5, 1}},
+                                                       {Kind::gravity, {0.6, 0, -0.8}},
+                                                       {Kind::hysteresis, {0.02, 0.3}},
+                                                       {Kind::tilt, {0, -1, 0}}};
+  const std::map<Kind, Index> sizes{{Kind::gear_ratio, 3},    {Kind::coupling, 2}, {Kind::payload, 3},
+                                    {Kind::straightness, 12}, {Kind::gravity, 6},  {Kind::hysteresis, 6},
+                                    {Kind::tilt, 18}};
   for (const vn::JointTermTraits& row : vn::joint_term_rows) {
     vn::JointTerms terms(3);
     const auto of_kind = parameters.contains(row.kind) ? parameters.at(row.kind) : std::vector<double>{};
-    EXPECT_EQ(row.parameters != nullptr, !of_kind.empty() || row.kind == Kind::transmission);
+    EXPECT_EQ(row.has_parameters(), !of_kind.empty() || row.kind == Kind::transmission);
     const auto add = [&] { terms.add(row.kind, vn::detail::ChainTable(chain.view()), of_kind); };
     if (row.kind == Kind::transmission) {
       EXPECT_THROW(add(), std::invalid_argument);
@@ -507,6 +511,9 @@ TEST(JointTerms, BlocksAreMadeFromTheirParameters) {
   EXPECT_EQ(complaint(Kind::gravity, {0, 0, -2}), "must have length 1");
   EXPECT_EQ(complaint(Kind::tilt, {0, 1}), "a direction has 2 components, must have 3");
   EXPECT_EQ(complaint(Kind::hysteresis, {0.1, 0}), "a width is 0, must be positive");
+  EXPECT_EQ(complaint(Kind::straightness, {2}), "a range is empty or missing");
+  EXPECT_EQ(complaint(Kind::straightness, {2, 1, 1}), "a range is empty or missing");
+  EXPECT_EQ(complaint(Kind::payload, {0, 0, -1, -2, 0, 0, 0}), "a reference payload has a mass, which is not negative");
 }
 
 TEST(JointErrors, WrongCoefficientsAreNamed) {

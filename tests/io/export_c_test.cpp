@@ -59,6 +59,7 @@ JointErrors joint_errors(const DhChain<N, Convention>& chain, bool few) {
     terms.gear_ratio = terms.coupling = true;
     terms.linear_ranges = std::vector<JointRange>(N, {-0.8, 0.6});
     terms.tilt.emplace(chain, Vector3(0.6, 0, -0.8));
+    terms.payload.emplace(detail::ChainTable(chain.view()), Vector3(0, 0.6, -0.8), Payload{1, Vector3(0.1, 0, 0.2)});
     for (int i = 0; i < N; ++i) {
       Fourier& fourier = terms.transmission[static_cast<std::size_t>(i)];
       if (i == 1) continue;  // a joint without
@@ -72,7 +73,10 @@ JointErrors joint_errors(const DhChain<N, Convention>& chain, bool few) {
   for (int i = 0; i < N; ++i)
     for (Index k = 0; k < terms.transmission[static_cast<std::size_t>(i)].size(); ++k)
       coefficients(terms.transmission_begin(i) + k) /= terms.transmission[static_cast<std::size_t>(i)].order(k);
-  return {terms, coefficients};
+  for (const JointTermBlock& block : terms.blocks())
+    for (Index k = 0; block.kind == JointTermBlock::Kind::payload && k < block.count; ++k)
+      coefficients(block.begin + k) *= 0.05;  // of tens of newton metres
+  return JointErrors(terms, coefficients).carrying({4, Vector3(-0.1, 0.05, 0.1)});
 }
 
 /// An arm with everything; the measured ranges of every joint end in the middle of its limits, some are periodic.

@@ -43,6 +43,8 @@ CalibratedRobot<6> example(bool learned) {
   terms.linear_ranges = std::vector<JointRange>(6, {-0.8, 0.6});
   terms.hysteresis = {0.01, 0.3};
   terms.tilt.emplace(robot.chain, Vector3(0, 0.6, -0.8));
+  terms.payload.emplace(detail::ChainTable(robot.chain.view()), Vector3(0, 0.6, -0.8),
+                        Payload{1.25, Vector3(0.01, 0.02, 0.1)});
   const JointErrors few(terms, VectorX::LinSpaced(terms.size(), -1e-4, 2e-4));
   for (int i = 0; i < 5; ++i) terms.transmission[static_cast<std::size_t>(i)] = Fourier::up_to(3 + i);
   const JointErrors all(terms, VectorX::LinSpaced(terms.size(), -3e-4, 3e-4));
@@ -72,6 +74,15 @@ CalibratedRobot<6> example_of_kernels() {
 void expect_same_bits(const Model::Arm& a, const Model::Arm& b) {
   EXPECT_TRUE(a.chain() == b.chain());
   EXPECT_TRUE(a.model().joint_errors().coefficients() == b.model().joint_errors().coefficients());
+  const auto &before = a.model().joint_errors().terms().payload, &after = b.model().joint_errors().terms().payload;
+  ASSERT_EQ(before.has_value(), after.has_value());
+  if (before) {
+    EXPECT_EQ(after->reference().mass, before->reference().mass);
+    EXPECT_EQ(after->reference().centre, before->reference().centre);
+    EXPECT_EQ(after->down(), before->down());
+  }
+  EXPECT_EQ(a.model().joint_errors().load().weight, b.model().joint_errors().load().weight);
+  EXPECT_EQ(a.model().joint_errors().load().moment, b.model().joint_errors().load().moment);
   EXPECT_TRUE(a.base_frame().values() == b.base_frame().values());
   EXPECT_TRUE(a.tool_frame().values() == b.tool_frame().values());
 }

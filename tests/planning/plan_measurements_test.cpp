@@ -74,12 +74,14 @@ TEST(PlanMeasurements, IsTheDesignOfExpectedRows) {
       const auto plan = plan_measurements(chain, candidates, options, {}, region);
       detail::PlannedCalibration planned{
           ArmGeometry(in_frames(chain)), options.geometry, options.errors, options.sensors, oriented, 8};
+      const auto expected = detail::expected_candidate_rows(planned, candidates.joints, candidates.previous);
       const MatrixX rows = detail::expected_rows(planned, candidates.joints, candidates.previous);
       planned.oriented = false;
       const MatrixX of_region = detail::expected_rows(planned, region, MatrixX());
       const Index block = oriented ? 6 : 3;
-      const PoseDesign design = design_poses(rows, block, {8, criterion, {}}, MatrixX(), of_region);
+      const PoseDesign design = detail::design_poses(expected, {8, criterion, {}}, MatrixX(), of_region);
       EXPECT_EQ(plan.chosen, design.chosen);
+      EXPECT_EQ(plan.chosen, design_poses(rows, block, {8, criterion, {}}, MatrixX(), of_region).chosen);
       EXPECT_EQ(plan.unknowns, rows.cols());
       EXPECT_LT(difference(plan.log_det, design.log_det), 1e-9);
       EXPECT_NEAR(plan.bound, information_bound(rows, block, 8, 3), 1e-9);

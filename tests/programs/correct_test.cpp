@@ -144,6 +144,31 @@ TEST_F(Correct, ForATemperature) {
             std::string::npos);
 }
 
+TEST_F(Correct, UnderAPayload) {
+  JointTerms terms(6);
+  terms.payload.emplace(detail::ChainTable(catalogue_.chain.view()), Vector3(0, 0, -1), Payload{1, Vector3(0, 0, 0.1)});
+  const JointErrors springs(terms, VectorX::Constant(6, 2e-5));
+  const Model model(catalogue_.chain,
+                    Model::Arm({actual_.chain(), springs}, actual_.base_frame(), actual_.tool_frame()));
+  save(folder_ / "model.json", CalibratedRobot<6>("with springs", model, catalogue_.limits, {}));
+  write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
+  const auto lands = [&](const std::string& arguments, const Payload& payload) {
+    const CommandResult done = correct("--targets targets.csv --out commands.csv " + arguments);
+    EXPECT_EQ(done.exit_code, 0) << done.errors;
+    EXPECT_LT(positioning_errors(model.carrying(payload).identified(), robot_.nominal(),
+                                 read_joints<6>(folder_ / "commands.csv"), targets_)
+                  .position.maxCoeff(),
+              1e-6);
+  };
+  lands("", {1, Vector3(0, 0, 0.1)});
+  lands("--payload-kg 4", {4});
+  lands("--payload-kg 4 --payload-centre 10,-20,150", {4, Vector3(0.01, -0.02, 0.15)});
+  save(folder_ / "model.json", CalibratedRobot<6>("stiff", Model(catalogue_.chain, actual_), catalogue_.limits, {}));
+  const CommandResult refused = correct("--targets targets.csv --out commands.csv --payload-kg 4");
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_NE(refused.errors.find("--payload-kg: the measurements of the model state no payload"), std::string::npos);
+}
+
 TEST_F(Correct, ATargetOutOfReachIsARowThatSaysSo) {
   targets_.row(3)(1) = 170 * std::numbers::pi / 180;  // joint 2 ends at 110 degrees
   targets_.row(17)(2) = 2.5;                          // joint 3 at 70

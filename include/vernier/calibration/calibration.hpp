@@ -110,10 +110,28 @@ struct Calibration {
 
 namespace detail {
 
-/// The model at the temperature of a row; unchanged where that is unknown.
+/// Whether a model depends on what the arm carries, and the data state that.
 template <class Chain>
-ErrorModel<Chain> at_temperature_of(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, Index row) {
-  return data.temperatures().size() > 0 ? model.at_temperature(data.temperatures()(row)) : model;
+bool loaded_by(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data) {
+  return data.payloads().rows() > 0 && model.identified().model().joint_errors().terms().payload.has_value();
+}
+
+/// The model at the temperature of a row and under its payload; unchanged by what is unknown.
+/// @param temperature whether it is to be at that temperature
+template <class Chain>
+ErrorModel<Chain> in_state_of(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, Index row,
+                              bool temperature = true) {
+  ErrorModel<Chain> out =
+      temperature && data.temperatures().size() > 0 ? model.at_temperature(data.temperatures()(row)) : model;
+  return loaded_by(model, data) ? out.carrying(Payload::of(data.payloads(), row)) : out;
+}
+
+/// Poses as predicted under the payloads of the data, else as the model is.
+template <class Chain>
+std::vector<Isometry3> predicted_under_payload(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data) {
+  std::vector<Isometry3> out;
+  for (Index i = 0; i < data.size(); ++i) out.push_back(in_state_of(model, data, i, false).pose(data.joints(i)));
+  return out;
 }
 
 /// Poses as predicted with their configurations of approach, moved by drift.
@@ -127,9 +145,9 @@ std::vector<Isometry3> predicted_visits(const ErrorModel<Chain>& model, const Da
     if (const VectorX zeros = drift.joint_zeros(data.times()(i)); zeros.size() > 0) q += zeros;
     return drift.motion(data.times()(i)) * now.approached_from(configuration(data.previous(), i)).pose(q);
   };
-  const bool thermal = temperature && model.thermal() != nullptr;
+  const bool thermal = temperature && model.thermal() != nullptr, varies = thermal || loaded_by(model, data);
   for (Index i = 0; i < data.size(); ++i)
-    out.push_back(thermal ? visit(at_temperature_of(model, data, i), i) : visit(model, i));
+    out.push_back(varies ? visit(in_state_of(model, data, i, thermal), i) : visit(model, i));
   return out;
 }
 
@@ -196,8 +214,8 @@ PredictedErrors predicted_errors(const FittedErrorModel<Chain>& errors, std::siz
   PredictedErrors out{PointRows(data.size(), 3), VectorX(data.size())};
   VectorX gates(data.size());
   for (Index i = 0; i < data.size(); ++i) gates(i) = model.gate(data.joints(i));
-  const std::vector<Matrix6> covariances =
-      errors.visit_covariances(data.joints(), gates, static_cast<int>(station), data.previous(), data.temperatures());
+  const std::vector<Matrix6> covariances = errors.visit_covariances(
+      data.joints(), gates, static_cast<int>(station), data.previous(), data.temperatures(), data.payloads());
   const std::vector<Isometry3> poses = predicted_visits(model, data, true, {});
   const Matrix3 back = rotation(errors.model().identified().base()).transpose();
   const Matrix3 turn = rotation(model.identified().base()) * back;

@@ -43,6 +43,12 @@ struct PoseAdvice {
   std::vector<JointType> joint_types{};  ///< types of those joints
 };
 
+/// What a calibration says of payload.
+struct FittedPayload {
+  double mean = 0;         ///< mass that the arm carried on average [kg]
+  bool estimated = false;  ///< whether there were several payloads, so that the effect of another one is known
+};
+
 /// A calibration, assessed.
 struct CalibrationReport {
   IdentificationReport identification;       ///< of the geometry
@@ -56,6 +62,7 @@ struct CalibrationReport {
   VectorX gates;                             ///< share of the joint-wise terms at each held-out pose
   StageName chosen{};                        ///< the stage that is deployed
   std::optional<double> mean_temperature{};  ///< of the training poses [deg C], where the model changes with it
+  std::optional<FittedPayload> payload{};    ///< where the poses state what the arm carried, and that has an effect
   std::optional<PriorTransfer> prior{};      ///< how much of an earlier calibration holds, where there was one
   std::vector<SessionDrift> drift{};         ///< of each station's base; empty where the data do not support it
   double max_degradation = 0;     ///< largest excess of the chosen stage's error over that of geometry, inside the

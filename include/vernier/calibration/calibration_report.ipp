@@ -389,6 +389,12 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::details() const {
   if (mean_temperature)
     out.push_back(message("Where no temperature is given, the model is that of ", detail::brief(*mean_temperature),
                           " deg C, the mean of the measurements."));
+  if (payload)
+    out.push_back(payload->estimated
+                      ? message("Where no payload is given, the model is that of ", detail::brief(payload->mean),
+                                " kg, the mean of the measurements.")
+                      : message("Compliance to payload is unknown: all poses were measured at ",
+                                detail::brief(payload->mean), " kg. Measure poses with another payload, too."));
   for (std::size_t s = 0; s < drift.size(); ++s)
     if (!drift[s].empty())
       out.push_back(detail::describe_drift(drift[s], joints, drift.size() > 1 ? message(" of station ", s + 1) : ""));

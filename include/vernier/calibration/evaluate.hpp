@@ -29,6 +29,8 @@ VERNIER_API std::vector<std::pair<double, double>> within_limits(const std::vect
                                                                  double lower, double upper);
 
 /// Transmission of a joint: sampled over its measured ranges, and its spectrum.
+/// Whether an arm is known to be compliant to payload.
+VERNIER_API bool payload_matters(const JointErrors& errors);
 VERNIER_API void describe_transmission(const ErrorModelEstimate& estimate, int joint, JointReport& out);
 
 /// A vector of one value a pose of all stations, one station after the other.
@@ -90,12 +92,16 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
                                       traits.drift && s < errors.drift.size() ? errors.drift[s] : SessionDrift{});
     };
     const auto position = [&](std::size_t s, const Dataset<N>& data) {
-      return traits.visits ? detail::position_errors_of(poses(s, data), data.positions())
-                           : position_errors(staged.models[s], data);
+      if (traits.visits) return detail::position_errors_of(poses(s, data), data.positions());
+      if (detail::loaded_by(staged.models[s], data))
+        return detail::position_errors_of(detail::predicted_under_payload(staged.models[s], data), data.positions());
+      return position_errors(staged.models[s], data);
     };
     const auto rotation = [&](std::size_t s, const Dataset<N>& data) {
-      return traits.visits ? detail::rotation_errors_of(poses(s, data), data.orientations())
-                           : rotation_errors(staged.models[s], data);
+      if (traits.visits) return detail::rotation_errors_of(poses(s, data), data.orientations());
+      if (detail::loaded_by(staged.models[s], data))
+        return detail::rotation_errors_of(detail::predicted_under_payload(staged.models[s], data), data.orientations());
+      return rotation_errors(staged.models[s], data);
     };
     out.stages.emplace_back(staged.stage, detail::over_stations<N>(test, position),
                             out.oriented ? detail::over_stations<N>(test, rotation) : VectorX());
@@ -130,6 +136,8 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
     for (const StagedModels<Chain>& staged : errors.stages)
       if (staged.stage < Stage::temperature) out.chosen = staged.stage;
   if (errors.model().thermal() != nullptr) out.mean_temperature = errors.mean_temperature;
+  if (const JointErrors& last = errors.model().identified().model().joint_errors(); last.terms().payload)
+    out.payload = FittedPayload{last.terms().payload->reference().mass, detail::payload_matters(last)};
 
   const auto evaluation = [&](const auto& model) {
     const double began = detail::steady_seconds();

@@ -7,6 +7,13 @@
 
 namespace vernier::detail {
 
+VERNIER_IMPL bool payload_matters(const JointErrors& errors) {
+  for (const JointTermBlock& block : errors.terms().blocks())
+    for (Index k = 0; block.kind == JointTermBlock::Kind::payload && k < block.count; ++k)
+      if (std::abs(errors.coefficients()(block.begin + k)) > 1e-9) return true;  // tens of nanometres
+  return false;
+}
+
 VERNIER_IMPL std::vector<std::pair<double, double>> within_limits(
     const std::vector<JointRange>& ranges, const std::vector<std::pair<double, double>>& measured, double lower,
     double upper) {

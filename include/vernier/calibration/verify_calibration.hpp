@@ -148,9 +148,7 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
     for (Index i = 0; i < data.size(); ++i) {
       const JointVector<N> q = data.joints(i), previous = configuration(data.previous(), i);
       const Vector3 error = learned.rows() > 0 ? point(learned, i) : Vector3(Vector3::Zero());
-      const auto warm = [&](const ErrorModel<Chain>& arm) {
-        return data.temperatures().size() > 0 ? arm.at_temperature(data.temperatures()(i)) : arm;
-      };
+      const auto warm = [&](const ErrorModel<Chain>& arm) { return detail::in_state_of(arm, data, i); };
       const ErrorModel<Chain> arm = warm(now), before = warm(model);
       PoseAndJacobian<N> at = arm.approached_from(previous).pose_and_jacobian(q);
       Isometry3 then = before.approached_from(previous).pose(q);

@@ -81,12 +81,12 @@ VERNIER_LOCAL MatrixX residual_covariance(const VerificationInput& input, const 
   const MeasuredSet& data = input.data;
   const Index n = data.size(), unknowns = input.estimate.arm.size();
   const VectorX& temperatures = data.temperatures;
-  visits = input.estimate.visit_covariances(data.joints, input.gates, 0, data.previous, temperatures);
+  visits = input.estimate.visit_covariances(data.joints, input.gates, 0, data.previous, temperatures, data.payloads);
   std::vector<RowBlock> blocks(static_cast<std::size_t>(n));
   VectorX warmer = VectorX::Zero(n);
   if (temperatures.size() > 0 && !same_value(input.estimate.mean_temperature, 0))
     for (Index i = 0; i < n; ++i) warmer(i) = temperatures(i) - input.estimate.mean_temperature;
-  input.estimate.arm.linearise(0, data.joints, data.previous, blocks.data(), true, warmer);
+  input.estimate.arm.linearise(0, data.joints, data.previous, blocks.data(), true, warmer, data.payloads);
   MatrixX effects(unknowns, values * n);
   Rows6 one(6, unknowns);
   for (Index i = 0; i < n; ++i) {

@@ -30,6 +30,7 @@ struct PoseColumns {
   MatrixX previous;      ///< joint values from which each pose was approached; NaN where unknown
   VectorX times;         ///< of measuring
   VectorX temperatures;  ///< [deg C]; none where the file has none
+  MatrixX payloads;      ///< n x 4 [kg, m], see `Dataset::payloads`; no rows where the file has none
   RowOrigin origin;      ///< lines of the rows
   std::vector<Matrix6> covariances{};  ///< [m, rad]; none where the file has none
 };
@@ -52,8 +53,9 @@ VERNIER_API DistanceColumns read_distance_columns(const std::string& path, int j
                                                   const CsvFormat& format);
 VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows& positions,
                                   const PointRows& orientations, const ConstMatrixRef& previous, const VectorX& times,
-                                  const VectorX& temperatures, std::span<const JointType> types,
-                                  const ControllerMap& controller, const std::vector<Matrix6>& covariances);
+                                  const VectorX& temperatures, const MatrixX& payloads,
+                                  std::span<const JointType> types, const ControllerMap& controller,
+                                  const std::vector<Matrix6>& covariances);
 
 }  // namespace detail
 
@@ -68,11 +70,12 @@ VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows&
 /// number) changes, or the time goes back, the approach is unknown. Columns from_q1_rad .. from_qN_rad state the joint
 /// values from which each pose was approached; `segment` is ignored then. A column `time_s` or `time_ms` states the
 /// time of measuring [s], Unix time or any other; else that is the row's number, from 0. A column `temperature_c`
-/// states the temperature of the arm. Columns sx_mm, sy_mm, sz_mm (or _m, _um) and, for orientations, srx_rad, sry_rad,
-/// srz_rad (or _mrad, _deg) are standard deviations of each row; or the 21 entries cov_11 .. cov_66 (row not above
-/// column) are its covariance in mm and rad: of (x, y, z, rotation vector) in the sensor's frame, shifts added and
-/// rotations multiplied from the left. Where `format.controller` says so, columns q1 .. qM are the joints of the
-/// controller; the rows that are returned have those of the chain.
+/// states the temperature of the arm. A column `payload_kg` states what it carries; payload_x_mm, payload_y_mm and
+/// payload_z_mm its centre in the frame of the flange, else that is the tool point. Columns sx_mm, sy_mm, sz_mm (or _m,
+/// _um) and, for orientations, srx_rad, sry_rad, srz_rad (or _mrad, _deg) are standard deviations of each row; or the
+/// 21 entries cov_11 .. cov_66 (row not above column) are its covariance in mm and rad: of (x, y, z, rotation vector)
+/// in the sensor's frame, shifts added and rotations multiplied from the left. Where `format.controller` says so,
+/// columns q1 .. qM are the joints of the controller; the rows that are returned have those of the chain.
 /// @param path        the file
 /// @param joint_types where given, the columns of revolute joints must be angles and those of prismatic ones lengths
 /// @param format      how the file is written
@@ -80,13 +83,14 @@ VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows&
 template <int N>
 Dataset<N> read_dataset(const std::string& path, std::span<const JointType> joint_types = {},
                         const CsvFormat& format = {}) {
-  const auto [values, previous, times, temperatures, origin, covariances] =
+  const auto [values, previous, times, temperatures, payloads, origin, covariances] =
       detail::read_pose_columns(path, N, joint_types, format);
   return Dataset<N>(values.leftCols<N>(), values.middleCols<3>(N),
                     values.cols() > N + 3 ? PointRows(values.rightCols<3>()) : PointRows(0, 3))
       .approached_from(previous)
       .measured_at(times)
       .at_temperatures(temperatures)
+      .carrying(payloads)
       .with_covariances(covariances)
       .from(origin);
 }
@@ -190,8 +194,9 @@ VERNIER_API std::vector<Contact> read_contacts(const std::string& path, int join
 template <int N>
 void write_dataset(const std::string& path, const Dataset<N>& data, std::span<const JointType> joint_types = {},
                    const ControllerMap& controller = {}) {
-  write_file(path, detail::pose_text(data.joints(), data.positions(), data.orientations(), data.previous(),
-                                     data.times(), data.temperatures(), joint_types, controller, data.covariances()));
+  write_file(path,
+             detail::pose_text(data.joints(), data.positions(), data.orientations(), data.previous(), data.times(),
+                               data.temperatures(), data.payloads(), joint_types, controller, data.covariances()));
 }
 
 }  // namespace vernier

@@ -4,6 +4,7 @@
 #include "vernier/data/csv.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -161,12 +162,22 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   const CsvTable table(path, format);
   std::vector<CsvColumn> columns = joint_columns(table, joints, types, format.controller);
   for (CsvColumn& column : pose_columns(table)) columns.push_back(std::move(column));
-  PoseColumns out{with_chain_joints(table.numbers(columns), format.controller), {}, {}, {}, table.origin(), {}};
+  PoseColumns out{with_chain_joints(table.numbers(columns), format.controller), {}, {}, {}, {}, table.origin(), {}};
   out.covariances = covariances_of(table, out.values.cols() > joints + 3);
   const Index n = out.values.rows();
   const VectorX times = values_of(table, "time", quantities::time_of_measuring).value_or(VectorX());
   out.times = times.size() > 0 ? times : VectorX(VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)));
   out.temperatures = values_of(table, "temperature", quantities::temperature).value_or(VectorX());
+  if (const auto payload = values_of(table, "payload", quantities::payload)) {
+    out.payloads = MatrixX::Constant(n, 4, std::numeric_limits<double>::quiet_NaN());
+    for (Index i = 0; i < n; ++i) out.payloads(i, 0) = (*payload)(i);
+    Index axis = 0;
+    for (const char* stem : {"payload_x", "payload_y", "payload_z"}) {
+      ++axis;
+      if (const auto centre = values_of(table, stem, quantities::gauge_length))
+        for (Index i = 0; i < n; ++i) out.payloads(i, axis) = (*centre)(i);
+    }
+  }
   out.previous = has_joints(table, "from_")
                      ? with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller, "from_")),
                                          format.controller)
@@ -212,7 +223,7 @@ VERNIER_IMPL DistanceColumns read_distance_columns(const std::string& path, int 
 
 VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const PointRows& positions,
                                    const PointRows& orientations, const ConstMatrixRef& chain_previous,
-                                   const VectorX& times, const VectorX& temperatures,
+                                   const VectorX& times, const VectorX& temperatures, const MatrixX& payloads,
                                    std::span<const JointType> chain_types, const ControllerMap& controller,
                                    const std::vector<Matrix6>& covariances) {
   demand(chain_types.empty() || chain_types.size() == static_cast<std::size_t>(chain_joints.cols()),
@@ -236,6 +247,13 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const Poi
   for (Index j = 0; j < joints.cols() && !in_order; ++j) out += "from_" + name(j);
   if (!counted) out += "time_s,";
   if (temperatures.size() > 0) out += "temperature_c,";
+  if (payloads.rows() > 0) out += "payload_kg,";
+  std::array<bool, 4> centred{};
+  for (Index k = 1; k < 4 && payloads.rows() > 0; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    centred[axis] = finite_row(VERNIER_LATER(payloads).col(k).transpose(), 0);
+    if (centred[axis]) out += message("payload_", "xyz"[k - 1], "_mm,");
+  }
   for (int r = 1; r <= 6 && !covariances.empty(); ++r)
     for (int c = r; c <= 6; ++c) out += message("cov_", r, c, ',');
   for (Index j = 0; j < joints.cols(); ++j) out += name(j);
@@ -245,6 +263,9 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const Poi
       out += message(std::isfinite(previous(i, j)) ? previous(i, j) : joints(i, j), ',');
     if (!counted) out += message(times(i), ',');
     if (temperatures.size() > 0) out += message(temperatures(i), ',');
+    if (payloads.rows() > 0) out += message(payloads(i, 0), ',');
+    for (Index k = 1; k < 4; ++k)
+      if (centred[static_cast<std::size_t>(k)]) out += message(payloads(i, k) * 1e3, ',');
     for (Index r = 0; r < 6 && !covariances.empty(); ++r)
       for (Index c = r; c < 6; ++c)
         out += message(covariances[static_cast<std::size_t>(i)](r, c) * (r < 3 ? 1e3 : 1) * (c < 3 ? 1e3 : 1), ',');
@@ -363,8 +384,8 @@ VERNIER_IMPL std::vector<Contact> read_contacts(const std::string& path, int joi
     detail::copy_rows(q, object.rows, of_joints);
     detail::copy_rows(known, object.rows, of_known);
     try {
-      out.push_back(Contact(object.name, object.kind, std::move(of_joints), std::move(of_known))
-                        .from(origin.rows(object.rows)));
+      out.push_back(
+          Contact(object.name, object.kind, std::move(of_joints), std::move(of_known)).from(origin.rows(object.rows)));
     } catch (const std::invalid_argument& e) {
       throw DataError(message(path, ": ", std::string(e.what())));
     }

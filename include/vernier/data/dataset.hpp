@@ -27,6 +27,7 @@ VERNIER_API [[noreturn]] void refuse_coordinates(Index columns);
 VERNIER_API void check_covariances(const std::vector<Matrix6>& covariances, Index samples, bool oriented);
 /// Whether the first rows and columns of a symmetric matrix, as many as are measured, are positive definite.
 VERNIER_API bool positive_definite(const Matrix6& covariance, Index measured);
+VERNIER_API void check_payloads(const MatrixX& payloads, Index rows);
 
 /// Points, one a row, in a matrix of either kind.
 /// @throws std::invalid_argument on another number of coordinates than three
@@ -92,6 +93,10 @@ class Dataset {
   /// Temperatures of the arm [deg C], one a sample; none where they were not measured.
   const VectorX& temperatures() const { return temperatures_; }
 
+  /// What the arm carried at each sample, n x 4: mass [kg], and its centre in the frame of the flange [m], NaN for the
+  /// tool point; no rows where that is unknown.
+  const MatrixX& payloads() const { return payloads_; }
+
   /// These samples approached from other joint values; rows that are not finite are unknown.
   /// @throws std::invalid_argument for another number of rows
   Dataset approached_from(JointRows<N> previous) const {
@@ -142,6 +147,15 @@ class Dataset {
     return out;
   }
 
+  /// These samples measured under some payloads, as `payloads()` has them; no rows for unknown.
+  /// @throws std::invalid_argument for another number of rows, or a mass that is negative or not finite
+  Dataset carrying(MatrixX payloads) const {
+    detail::check_payloads(payloads, size());
+    Dataset out = *this;
+    out.payloads_ = std::move(payloads);
+    return out;
+  }
+
   /// Where the samples stand in files; empty where they are from none.
   const RowOrigin& origin() const { return origin_; }
   /// These samples, said to be from some rows of files.
@@ -180,6 +194,10 @@ class Dataset {
       out.temperatures_.resize(n);
       detail::copy_rows(temperatures_, indices, out.temperatures_);
     }
+    if (payloads_.rows() > 0) {
+      out.payloads_.resize(n, 4);
+      detail::copy_rows(payloads_, indices, out.payloads_);
+    }
     detail::copy_rows(positions_, indices, out.positions_);
     if (has_orientations()) detail::copy_rows(orientations_, indices, out.orientations_);
     for (const Index row : indices)
@@ -200,6 +218,7 @@ class Dataset {
   PointRows positions_, orientations_;
   JointRows<N> previous_;
   VectorX times_{}, temperatures_{};
+  MatrixX payloads_{};
   std::vector<Matrix6> covariances_{};
   RowOrigin origin_{};
 };

@@ -25,6 +25,20 @@ VERNIER_IMPL void check_measured_samples(const ConstMatrixRef& joints, const Poi
         "Dataset: row ", i, " has a value that is not finite");
 }
 
+VERNIER_IMPL void check_payloads(const MatrixX& payloads, Index rows) {
+  if (payloads.rows() == 0) return;
+  demand(payloads.rows() == rows && payloads.cols() == 4, "Dataset: ", payloads.rows(), " x ", payloads.cols(),
+         " values of payloads for ", rows, " rows, four each");
+  for (Index i = 0; i < rows; ++i)
+    demand(payloads(i, 0) >= 0 && std::isfinite(payloads(i, 0)), "Dataset: row ", i, " has a payload of ",
+           payloads(i, 0), " kg, must be 0 or more");
+  for (Index i = 0; i < rows; ++i)
+    for (Index k = 1; k < 4; ++k)
+      demand(std::isfinite(payloads(i, k)) == std::isfinite(payloads(0, k)), "Dataset: row ", i,
+             " has a payload whose centre is ", std::isfinite(payloads(0, k)) ? "not known" : "known",
+             ", unlike that of the first row");
+}
+
 VERNIER_IMPL [[noreturn]] void refuse_coordinates(Index columns) {
   throw std::invalid_argument(message(counted(columns, "coordinate", "coordinates"), " for a point in space"));
 }

@@ -159,6 +159,20 @@ class ErrorModel : public ChecksJoints<ErrorModel<C>> {
     return out;
   }
 
+  /// The arm under a payload, in place of the mean one of its measurements; as it is where they state none, or the
+  /// payload is not finite. A centre that is not finite is at the tool point. The nominal arm stays.
+  ErrorModel carrying(const Payload& payload) const {
+    if (identified_.model().joint_errors().terms().payload == std::nullopt) return *this;
+    const auto loaded = [&](const Arm& arm) {
+      return arm.around(WithJointErrors<Chain>(
+          arm.chain(), arm.model().joint_errors().carrying(payload.at(translation(arm.tool())))));
+    };
+    ErrorModel out = *this;
+    out.identified_ = loaded(identified_);
+    if (out.outside_) out.outside_->arm = loaded(outside_->arm);
+    return out;
+  }
+
   /// This arm in another place, with another tool and other joint zeros; the nominal arm is moved along.
   /// @param base    applied in front: motion of the frame of the measurements
   /// @param offsets added to the joint values [rad, m]

@@ -120,9 +120,11 @@ struct ErrorModelEstimate {
   /// @param station      from 0
   /// @param previous     n x joints; no rows where unknown
   /// @param temperatures n; none where unknown
+  /// @param payloads     n x 4, see `Dataset::payloads`; no rows for the mean one of the measurements
   VERNIER_API std::vector<Matrix6> visit_covariances(const ConstMatrixRef& joints, const ConstVectorRef& gates,
                                                      int station, const ConstMatrixRef& previous,
-                                                     const ConstVectorRef& temperatures) const;
+                                                     const ConstVectorRef& temperatures,
+                                                     const ConstMatrixRef& payloads = MatrixX()) const;
 };
 
 }  // namespace vernier

@@ -116,10 +116,10 @@ VERNIER_LOCAL inline MatrixX one_row(const ConstVectorRef& values) {
 /// Covariances of modelled poses at n configurations; `rows` are the linearised poses.
 VERNIER_LOCAL std::vector<Matrix6> pose_covariances(const ErrorModelEstimate& estimate, const ConstMatrixRef& joints,
                                                     int station, const ConstMatrixRef& previous, const VectorX& warmer,
-                                                    std::vector<RowBlock>& rows) {
+                                                    const MatrixX& payloads, std::vector<RowBlock>& rows) {
   const Index n = joints.rows(), unknowns = estimate.arm.size();
   rows.resize(static_cast<std::size_t>(n));
-  estimate.arm.linearise(station, joints, previous, rows.data(), true, warmer);
+  estimate.arm.linearise(station, joints, previous, rows.data(), true, warmer, payloads);
   MatrixX all(unknowns, 6 * n);  // the rows of each pose are contiguous columns
   Rows6 one(6, unknowns);
   for (Index i = 0; i < n; ++i) {
@@ -147,7 +147,8 @@ VERNIER_LOCAL inline void add_outer_product(const Vector6& x, double factor, Mat
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::model_covariance(const ConstVectorRef& q, int station) const {
   std::vector<RowBlock> rows;
-  return detail::pose_covariances(*this, detail::one_row(q), station, MatrixX(), VectorX::Zero(1), rows).front();
+  return detail::pose_covariances(*this, detail::one_row(q), station, MatrixX(), VectorX::Zero(1), MatrixX(), rows)
+      .front();
 }
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::visit_covariance(const ConstVectorRef& q, double gate, int station,
@@ -161,14 +162,16 @@ VERNIER_IMPL Matrix6 ErrorModelEstimate::visit_covariance(const ConstVectorRef& 
 VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const ConstMatrixRef& joints,
                                                                         const ConstVectorRef& gates, int station,
                                                                         const ConstMatrixRef& previous,
-                                                                        const ConstVectorRef& temperatures) const {
+                                                                        const ConstVectorRef& temperatures,
+                                                                        const ConstMatrixRef& payloads) const {
   constexpr Index batch = 64;
   std::vector<Matrix6> all;
   const VectorX steps = arm.steps();
   for (Index first = 0; first < joints.rows(); first += batch) {
     const Index n = (std::min)(batch, joints.rows() - first);
     const MatrixX q = detail::consecutive_rows(joints, first, n),
-                  before = previous.rows() > 0 ? detail::consecutive_rows(previous, first, n) : MatrixX();
+                  before = previous.rows() > 0 ? detail::consecutive_rows(previous, first, n) : MatrixX(),
+                  carried = payloads.rows() > 0 ? detail::consecutive_rows(payloads, first, n) : MatrixX();
     VectorX warmer = VectorX::Zero(n);
     std::vector<bool> known(static_cast<std::size_t>(n), false);
     for (Index i = 0; i < n && temperatures.size() > 0; ++i)
@@ -177,10 +180,10 @@ VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const Co
         warmer(i) = temperatures(first + i) - mean_temperature;
       }
     std::vector<RowBlock> rows, warm;
-    const std::vector<Matrix6> modelled = detail::pose_covariances(*this, q, station, before, warmer, rows);
+    const std::vector<Matrix6> modelled = detail::pose_covariances(*this, q, station, before, warmer, carried, rows);
     if (temperature_std > 0) {
       warm.resize(static_cast<std::size_t>(n));
-      arm.linearise(station, q, before, warm.data(), true, VectorX::Constant(n, temperature_std));
+      arm.linearise(station, q, before, warm.data(), true, VectorX::Constant(n, temperature_std), carried);
     }
     for (std::size_t i = 0; i < modelled.size(); ++i) {
       const auto row = static_cast<Index>(i);

@@ -21,19 +21,27 @@ VERNIER_IMPL std::optional<std::vector<double>> ErrorModelOptions::parameters(Jo
     case Kind::gravity: return if_allowed(compliance, direction);
     case Kind::hysteresis: return if_allowed(hysteresis, {0.01, 0.3});
     case Kind::tilt: return if_allowed(tilt, direction);
+    case Kind::payload:
+    case Kind::straightness:
     case Kind::transmission: break;
   }
   return std::nullopt;
 }
 
-VERNIER_IMPL double ErrorModelOptions::expected_size(JointTermBlock::Kind kind) const {
+VERNIER_IMPL double ErrorModelOptions::expected_size(const JointTerms& terms, const JointTermBlock& block,
+                                                     Index coefficient) const {
   using Kind = JointTermBlock::Kind;
-  switch (kind) {
+  switch (block.kind) {
     case Kind::gear_ratio: return gear_ratio_prior_std;
     case Kind::coupling: return coupling_prior_std;
     case Kind::gravity: return compliance_prior_std;
     case Kind::hysteresis: return hysteresis_prior_std;
+    case Kind::payload: return payload_prior_std;
     case Kind::tilt: return tilt_prior_std;
+    case Kind::straightness: {
+      const auto order = static_cast<double>(coefficient % terms.straightness->orders() + 1);
+      return straightness_prior_std / (order * order);
+    }
     case Kind::transmission: break;
   }
   demand(false, "ErrorModelOptions: functions of single joints have expected sizes by their spectrum");
@@ -43,6 +51,8 @@ VERNIER_IMPL double ErrorModelOptions::expected_size(JointTermBlock::Kind kind) 
 VERNIER_IMPL void ErrorModelOptions::validate() const {
   for (const auto& [name, value] : {std::pair{"compliance_prior_std", compliance_prior_std},
                                     std::pair{"thermal_prior_std", thermal_prior_std},
+                                    {"payload_prior_std", payload_prior_std},
+                                    {"straightness_prior_std", straightness_prior_std},
                                     {"gear_ratio_prior_std", gear_ratio_prior_std},
                                     {"coupling_prior_std", coupling_prior_std},
                                     {"hysteresis_prior_std", hysteresis_prior_std},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "vernier/core/check.hpp"
@@ -17,6 +18,42 @@
 #include "vernier/error_model/fit_error_model.hpp"
 
 namespace vernier::detail {
+
+/// Payloads of a problem's measurements.
+struct StatedPayloads {
+  Payload mean;
+  bool vary = false;
+};
+/// None where they are not stated.
+VERNIER_LOCAL std::optional<StatedPayloads> stated_payloads(const CalibrationProblem& problem) {
+  const MeasuredSet* stated = nullptr;
+  std::vector<Payload> all;
+  for (std::size_t s = 0; s < problem.sets().size(); ++s) {
+    const MatrixX& rows = problem.sets()[s].payloads;
+    if (rows.rows() > 0) stated = &problem.sets()[s];
+    const Vector3 tool = translation(problem.arm.geometry(static_cast<int>(s)).tool().isometry());
+    for (Index i = 0; i < rows.rows(); ++i) all.push_back(Payload::of(rows, i).at(tool));
+  }
+  if (stated == nullptr) return {};
+  for (const MeasuredSet& set : problem.sets())
+    demand(!set.locates() || set.payloads.rows() > 0, "fit_error_model: ", set.name, " states no payload, but ",
+           stated->name, " does");
+  StatedPayloads out{{0, Vector3::Zero()}};
+  Vector3 centre = Vector3::Zero();
+  for (const Payload& one : all) {
+    out.mean.mass += one.mass / static_cast<double>(all.size());
+    out.mean.centre += one.mass / static_cast<double>(all.size()) * one.centre;
+    centre += one.centre / static_cast<double>(all.size());
+  }
+  out.mean.centre = out.mean.mass > 0 ? Vector3(out.mean.centre / out.mean.mass) : centre;
+  constexpr double grams = 1e-3, metres = 1e-3;
+  for (const Payload& one : all) {
+    const Vector3 moment = one.mass * one.centre - out.mean.mass * out.mean.centre;
+    out.vary = out.vary || std::abs(one.mass - out.mean.mass) > grams || moment.norm() > grams + metres * out.mean.mass;
+  }
+  if (!out.vary) out.mean = all.front();
+  return out;
+}
 
 /// The steps of `fit_error_model`.
 class ErrorModelFit {
@@ -41,9 +78,15 @@ class ErrorModelFit {
 
     JointTerms elastic(input_.nominal.joints());
     add_to(elastic, JointTermBlock::Kind::gravity);
+    const std::optional<StatedPayloads> payloads = stated_payloads(problem_);
+    if (options_.compliance && payloads && payloads->vary)
+      elastic.payload.emplace(input_.nominal, options_.down, payloads->mean);
     const bool deflects = elastic.size() > 0 && model_.add(Block::elastic, elastic);
     if (deflects) model_.solve();
     out.stages.push_back({Stage::elastic, deflects, arms()});
+
+    const bool bent = add_straightness();
+    elastic.straightness = problem_.arm.terms().straightness;
 
     JointTerms all = elastic;
     for (int j = 0; j < all.joints; ++j)
@@ -59,7 +102,7 @@ class ErrorModelFit {
       linear.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
     const bool periodic = all.size() > elastic.size(), geared = periodic && (linear.gear_ratio || linear.coupling);
     const bool harmonics = geared ? add_functions(all, linear) : periodic && model_.add(Block::jointwise, all);
-    const bool jointwise = harmonics || problem_.arm.terms().gear_ratio || problem_.arm.terms().coupling;
+    const bool jointwise = bent || harmonics || problem_.arm.terms().gear_ratio || problem_.arm.terms().coupling;
     if (harmonics) {
       model_.steps(2);
       estimate.fallback_error = model_.blocks.back().without;
@@ -71,7 +114,7 @@ class ErrorModelFit {
         model_.learn_spectrum(4);
     }
     if (jointwise) {
-      if (elastic.size() > 0)  // deflection is clearer once all else is modelled
+      if (elastic.gravity)  // deflection is clearer once all else is modelled
         model_.choose_by_evidence(Block::elastic_again, model_.gravity());
       model_.size_by_evidence(link_unknowns(problem_.arm));
       model_.solve();
@@ -110,6 +153,7 @@ class ErrorModelFit {
       model_.steps(1);
     }
     if (harmonics && options_.find_lines && !inherited) find_lines(model_);
+    if (options_.compliance && payloads && !payloads->vary && !inherited) leave_payload_open(payloads->mean);
     model_.solve();
     out.estimate.drift = problem_.drift;
     const std::vector<FittedArm> fitted = arms();
@@ -158,6 +202,49 @@ class ErrorModelFit {
     const auto parameters = options_.parameters(kind);
     if (parameters) terms.add(kind, input_.nominal, *parameters);
     return parameters.has_value();
+  }
+
+  /// Adds how prismatic joints depart from a straight motion, over the range in which they were measured.
+  /// @return whether they do
+  VERNIER_LOCAL bool add_straightness() {
+    JointTerms terms = problem_.arm.terms();
+    const MatrixX joints = problem_.joints();
+    std::vector<JointRange> ranges;
+    bool any = false, moved = true;
+    for (int j = 0; j < input_.nominal.joints(); ++j) {
+      ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
+      if (input_.nominal.revolute(j)) continue;
+      any = true;
+      moved = moved && ranges.back().lower < ranges.back().upper;
+    }
+    if (!options_.straightness || !any || !moved) return false;
+    terms.straightness.emplace(input_.nominal, std::move(ranges));
+    if (!model_.add(Block::straightness, terms)) return false;
+    model_.solve();
+    return true;
+  }
+
+  /// Adds compliances to payload of which one payload says nothing: they stay at their priors, and so does what they
+  /// add to the covariance under other payloads. Products of compliance and weight tell how compliant a joint may be.
+  VERNIER_LOCAL void leave_payload_open(const Payload& reference) {
+    JointTerms terms = problem_.arm.terms();
+    if (terms.joints == 0) terms = JointTerms(input_.nominal.joints());
+    terms.payload.emplace(input_.nominal, options_.down, reference);
+    model_.extend_terms(terms);
+    constexpr double light = 100;  // weight of the links of a light arm [N]
+    const VectorX& coefficients = problem_.arm.joint_errors().coefficients();
+    VectorX of_products = VectorX::Zero(terms.joints), precisions = problem_.arm.precisions();
+    for (const JointTermBlock& block : terms.blocks()) {
+      for (int i = 0; block.kind == JointTermBlock::Kind::gravity && i < terms.joints; ++i)
+        for (int j = i; j < terms.joints; ++j)
+          of_products(i) += coefficients(block.begin + terms.gravity->index(i, j)) / light;
+      for (int i = 0; block.kind == JointTermBlock::Kind::payload && i < terms.joints; ++i) {
+        const double ratio = of_products(i) / options_.payload_prior_std;
+        precisions(precisions.size() - terms.size() + block.begin + i) = 1 / (1 + ratio * ratio);
+      }
+    }
+    problem_.arm.set_precisions(precisions);
+    model_.changed();
   }
 
   VERNIER_LOCAL std::vector<FittedArm> arms() const {

@@ -76,6 +76,7 @@ enum class Block {
   lines,          ///< orders found in the residuals
   drift,          ///< of the bases
   joint_drift,    ///< of the joints' zeros, beside the bases
+  straightness,   ///< departures of prismatic joints from a straight motion
 };
 
 /// What is known of a block.
@@ -86,7 +87,7 @@ struct BlockTraits {
 };
 
 /// All blocks, by their number.
-inline constexpr std::array<BlockTraits, 12> block_rows{{
+inline constexpr std::array<BlockTraits, 13> block_rows{{
     {Block::elastic, "elastic", "gravity compliance"},
     {Block::jointwise, "jointwise", "functions of single joints"},
     {Block::gears, "gears", "gear ratios and coupling"},
@@ -99,6 +100,7 @@ inline constexpr std::array<BlockTraits, 12> block_rows{{
     {Block::lines, "lines", "further orders of the joints' functions"},
     {Block::drift, "drift", "drift of the base"},
     {Block::joint_drift, "joint_drift", "drift of the joints' zeros"},
+    {Block::straightness, "straightness", "straightness of prismatic joints"},
 }};
 
 /// What is known of a block.

@@ -19,13 +19,15 @@
 #include "vernier/error_terms/fourier.hpp"
 #include "vernier/error_terms/gravity_compliance.hpp"
 #include "vernier/error_terms/gravity_tilt.hpp"
+#include "vernier/error_terms/payload_compliance.hpp"
+#include "vernier/error_terms/straightness.hpp"
 
 namespace vernier {
 
 /// Coefficients of joint errors that belong together.
 struct JointTermBlock {
   /// What they are coefficients of.
-  enum class Kind { gear_ratio, coupling, gravity, hysteresis, tilt, transmission };
+  enum class Kind { gear_ratio, coupling, gravity, payload, hysteresis, tilt, straightness, transmission };
   Kind kind;    ///< see `JointTerms`
   int joint;    ///< of a transmission, from 0; else -1
   Index begin;  ///< first coefficient
@@ -34,20 +36,35 @@ struct JointTermBlock {
 
 /// What is known of a kind of joint errors, beside its formula. Model files and C source follow this table.
 struct JointTermTraits {
-  JointTermBlock::Kind kind;  ///< itself
-  const char* key;            ///< of the block in model files; also its name in C
-  const char* parameters;     ///< key of the block's parameters; null: it has none
-  const char* coefficients;   ///< key of its coefficients beside the parameters
+  /// Some parameters of a block: their key in model files, and their number; 0: all that follow.
+  struct Parameter {
+    const char* key = nullptr;
+    int count = 0;
+  };
+  JointTermBlock::Kind kind;              ///< itself
+  const char* key;                        ///< of the block in model files; also its name in C
+  bool links = false;                     ///< whether its C text walks along the nominal chain
+  std::array<Parameter, 3> parameters{};  ///< of the block, in the order of `JointTerms::parameters`
+  const char* coefficients = nullptr;     ///< key of its coefficients beside parameters
+
+  /// Whether the block has parameters.
+  constexpr bool has_parameters() const { return parameters[0].key != nullptr; }
 };
 
 /// All kinds, by their number, in the order of the coefficients.
-inline constexpr std::array<JointTermTraits, 6> joint_term_rows{{
-    {JointTermBlock::Kind::gear_ratio, "gear_ratio", nullptr, nullptr},
-    {JointTermBlock::Kind::coupling, "coupling", nullptr, nullptr},
-    {JointTermBlock::Kind::gravity, "gravity", "down", "products_rad_per_m"},
-    {JointTermBlock::Kind::hysteresis, "hysteresis", "widths_rad", "coefficients_rad"},
-    {JointTermBlock::Kind::tilt, "tilt", "down", "coefficients_rad"},
-    {JointTermBlock::Kind::transmission, "transmission", "orders", "coefficients_rad"},
+inline constexpr std::array<JointTermTraits, 8> joint_term_rows{{
+    {JointTermBlock::Kind::gear_ratio, "gear_ratio"},
+    {JointTermBlock::Kind::coupling, "coupling"},
+    {JointTermBlock::Kind::gravity, "gravity", true, {{{"down", 3}}}, "products_rad_per_m"},
+    {JointTermBlock::Kind::payload,
+     "payload",
+     true,
+     {{{"down", 3}, {"reference_kg", 1}, {"reference_centre_m", 3}}},
+     "compliances_rad_per_nm"},
+    {JointTermBlock::Kind::hysteresis, "hysteresis", false, {{{"widths_rad", 0}}}, "coefficients_rad"},
+    {JointTermBlock::Kind::tilt, "tilt", true, {{{"down", 3}}}, "coefficients_rad"},
+    {JointTermBlock::Kind::straightness, "straightness", true, {{{"orders", 1}, {"ranges_m", 0}}}, "coefficients"},
+    {JointTermBlock::Kind::transmission, "transmission", false, {{{"orders", 0}}}, "coefficients_rad"},
 }};
 
 static_assert(
@@ -68,9 +85,11 @@ constexpr const JointTermTraits& traits_of(JointTermBlock::Kind kind) {
 /// - gear ratio: `dq_i = rho_i q_i`; outside `linear_ranges` as at their nearest end
 /// - coupling: `dq_i = kappa_i q_(i-1)`, i >= 2; likewise
 /// - gravity compliance: see `GravityCompliance`
+/// - compliance to payload: see `PayloadCompliance`
 /// - hysteresis: `dq_i = sum_w h_iw tanh((q_i - p_i) / w)`, p the configuration from which q was approached; 0 where
 ///   that is unknown, which is the mean of both directions
 /// - tilt of the joints' frames: no error of joint values but a motion of the arm's end, see `GravityTilt`
+/// - straightness of prismatic joints: likewise, see `Straightness`
 /// - transmission: `dq_i = sum_k beta_ik h_k(q_i)`, harmonics of each joint, joint by joint
 /// @cite Whitney, Lozinski and Rourke 1986; Ruderman, Hoffmann and Bertram 2009 (hysteresis)
 struct JointTerms {
@@ -78,11 +97,13 @@ struct JointTerms {
   bool gear_ratio = false;                     ///< present?
   bool coupling = false;                       ///< present?
   std::optional<GravityCompliance> gravity{};  ///< present?
+  std::optional<PayloadCompliance> payload{};  ///< present?
   /// Ranges of each joint in which gear ratios and couplings were estimated [rad, m]; empty: no bounds.
   std::vector<JointRange> linear_ranges{};
-  std::vector<double> hysteresis{};     ///< widths w [rad, m], the same for every joint; none: absent
-  std::optional<GravityTilt> tilt{};    ///< present?
-  std::vector<Fourier> transmission{};  ///< of each joint; may have no functions
+  std::vector<double> hysteresis{};            ///< widths w [rad, m], the same for every joint; none: absent
+  std::optional<GravityTilt> tilt{};           ///< present?
+  std::optional<Straightness> straightness{};  ///< present?
+  std::vector<Fourier> transmission{};         ///< of each joint; may have no functions
 
   /// No terms.
   JointTerms() = default;
@@ -93,10 +114,16 @@ struct JointTerms {
   /// Number of coefficients before the transmission's, each with a column of its own in a linearised pose.
   Index num_dense_terms() const {
     return (gear_ratio ? joints : 0) + (coupling ? joints - 1 : 0) + (gravity ? gravity->size() : 0) +
-           joints * static_cast<Index>(hysteresis.size()) + (tilt ? tilt->size() : 0);
+           (payload ? joints : 0) + joints * static_cast<Index>(hysteresis.size()) + num_end_terms();
   }
-  /// First coefficient of the tilts, which are the last before the transmission's.
-  Index tilt_begin() const { return num_dense_terms() - (tilt ? tilt->size() : 0); }
+  /// Number of coefficients that move the arm's end: of tilts, then of straightness.
+  Index num_end_terms() const { return (tilt ? tilt->size() : 0) + (straightness ? straightness->size() : 0); }
+  /// First of them, which are the last before the transmission's.
+  Index end_begin() const { return num_dense_terms() - num_end_terms(); }
+  /// Translation [m] and rotation vector [rad] of the arm's end by one unit of each, 6 x num_end_terms().
+  VERNIER_API void end_basis(const double* q, MatrixRef out) const noexcept;
+  /// The motion of the arm's end by the coefficients from `end_begin()` on, see `GravityTilt::motion`.
+  VERNIER_API Vector6 end_motion(const double* q, const double* coefficients, double* rates = nullptr) const noexcept;
   /// First coefficient of a joint's transmission; that of joint N is the number of all.
   Index transmission_begin(int joint) const {
     Index begin = num_dense_terms();
@@ -114,7 +141,7 @@ struct JointTerms {
   /// Makes a block present that has one column a coefficient.
   /// @param kind       any but transmission, which has functions of its own for each joint
   /// @param nominal    the chain whose torques gravity compliance needs, and whose frames tilt
-  /// @param parameters direction of gravity (gravity, tilt) or widths (hysteresis); none for others
+  /// @param parameters as `joint_term_rows` lists them
   /// @throws std::invalid_argument on parameters that the block cannot have
   VERNIER_API void add(JointTermBlock::Kind kind, const detail::ChainTable& nominal,
                        std::span<const double> parameters);
@@ -123,14 +150,17 @@ struct JointTerms {
   /// The blocks that are present, in the order of their coefficients.
   VERNIER_API std::vector<JointTermBlock> blocks() const;
 
-  /// The columns of Phi before the transmission's; those of tilts are zero.
+  /// The columns of Phi before the transmission's; those of the arm's end are zero.
   /// @param q        joint values [rad, m]
   /// @param previous those from which q was approached; null, or not finite, where unknown
   /// @param out      joints x num_dense_terms()
-  VERNIER_API void dense_basis(const double* q, const double* previous, MatrixRef out) const noexcept;
+  /// @param load     what the arm carries beyond the reference payload
+  VERNIER_API void dense_basis(const double* q, const double* previous, MatrixRef out,
+                               const PayloadLoad& load = {}) const noexcept;
 
-  /// Names: `gear3`, `coupling3` (of joint 2 into 3), `sag2_5` (joint 2 under link 5), `hysteresis3_1` (joint 3,
-  /// first width), `tilt3_xz` (joint 3, about x by gravity along z), `cos3_12`, `sin3_12` (joint 3, order 12).
+  /// Names: `gear3`, `coupling3` (of joint 2 into 3), `sag2_5` (joint 2 under link 5), `payload2`, `hysteresis3_1`
+  /// (joint 3, first width), `straight1_rx2` (joint 1, about x, order 2), `tilt3_xz` (joint 3, about x by gravity along
+  /// z), `cos3_12`, `sin3_12` (joint 3, order 12).
   VERNIER_API std::vector<std::string> names() const;
 };
 
@@ -159,6 +189,16 @@ class JointErrors {
   const JointTerms& terms() const { return terms_; }
   /// The coefficients: rad, or m at prismatic joints; gravity's rad/m.
   const VectorX& coefficients() const { return coefficients_; }
+  /// These errors under a payload, in place of the reference payload.
+  VERNIER_API JointErrors carrying(const Payload& payload) const;
+  /// What the arm carries beyond the reference payload.
+  const PayloadLoad& load() const { return load_; }
+  /// These errors under a load beyond the reference payload.
+  JointErrors under(const PayloadLoad& load) const {
+    JointErrors out = *this;
+    out.load_ = load;
+    return out;
+  }
   /// Whether there is none.
   bool empty() const { return coefficients_.size() == 0; }
 
@@ -169,8 +209,9 @@ class JointErrors {
   /// @param effective  n values
   /// @param derivative n x n, by columns
   /// @param previous   joint values from which q was approached; null, or not finite, where unknown
+  /// @param load       what the arm carries; null: `load()`
   VERNIER_API void evaluate(const double* q, int n, double* effective, double* derivative,
-                            const double* previous = nullptr) const noexcept;
+                            const double* previous = nullptr, const PayloadLoad* load = nullptr) const noexcept;
 
   /// Effective joint values of N joints, and their derivative.
   template <int N>
@@ -188,13 +229,15 @@ class JointErrors {
   /// Effective values of n configurations, n x joints.
   /// @param joints   commanded values, n x joints [rad, m]
   /// @param previous joint values from which they were approached, likewise; no rows where unknown
-  VERNIER_API MatrixX effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous = MatrixX()) const;
+  /// @param loads    what the arm carries at each; none: `load()`
+  VERNIER_API MatrixX effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous = MatrixX(),
+                                     std::span<const PayloadLoad> loads = {}) const;
   /// Half the width of joint i's (from 0) hysteresis loop [rad, m], that of motions much longer than its widths.
   VERNIER_API double half_loop(int i) const noexcept;
 
-  /// Whether frames of joints tilt.
-  bool tilts() const { return terms_.tilt.has_value(); }
-  /// Moves a pose of the arm's end by the tilts of the joints' frames, and extends its derivative by theirs. Does not
+  /// Whether the arm's end moves beyond its joints: frames of joints tilt, or a guide is not straight.
+  bool tilts() const { return terms_.tilt || terms_.straightness; }
+  /// Moves a pose of the arm's end by these motions, and extends its derivative by theirs. Does not
   /// allocate.
   /// @param q        commanded joint values
   /// @param pose     in the base frame of the chain
@@ -208,6 +251,7 @@ class JointErrors {
   JointTerms terms_{};
   VectorX coefficients_{};
   detail::HarmonicTable harmonics_{};
+  PayloadLoad load_{};
 };
 
 /// A chain with joint errors: `pose(q) = chain.pose(q + dq(q))`, moved by tilts of the joints' frames where there are

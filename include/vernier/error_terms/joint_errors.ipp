@@ -60,7 +60,8 @@ VERNIER_IMPL void detail::visit_common_terms(const JointTerms& first, const Join
     }
 }
 
-VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previous, MatrixRef out) const noexcept {
+VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previous, MatrixRef out,
+                                          const PayloadLoad& load) const noexcept {
   out.setZero();
   Index at = 0;
   if (gear_ratio)
@@ -70,6 +71,11 @@ VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previou
   if (gravity) {
     gravity->basis(q, VERNIER_LATER(out).middleCols(at, gravity->size()));
     at += gravity->size();
+  }
+  if (payload) {
+    double torques[max_joints];
+    payload->torques(q, load, torques);
+    for (int i = 0; i < joints; ++i) out(i, at++) = torques[i];
   }
   for (const double width : hysteresis)
     for (int i = 0; i < joints; ++i) out(i, at++) = detail::step_of(q, previous, i, width);
@@ -88,6 +94,26 @@ VERNIER_IMPL void JointTerms::add(JointTermBlock::Kind kind, const detail::Chain
       hysteresis.assign(parameters.begin(), parameters.end());
       break;
     case Kind::tilt: tilt.emplace(nominal, detail::direction_of(parameters)); break;
+    case Kind::payload:
+      demand(parameters.size() == 7 && parameters[3] >= 0, "a reference payload has a mass, which is not negative");
+      payload.emplace(nominal, detail::direction_of(parameters.first(3)),
+                      Payload{parameters[3], Vector3(parameters[4], parameters[5], parameters[6])});
+      break;
+    case Kind::straightness: {
+      std::vector<JointRange> ranges(static_cast<std::size_t>(joints));
+      std::size_t at = 1;
+      for (int j = 0; j < joints; ++j) {
+        if (nominal.revolute(j)) continue;
+        demand(at + 1 < parameters.size() && parameters[at] < parameters[at + 1], "a range is empty or missing");
+        ranges[static_cast<std::size_t>(j)] = {parameters[at], parameters[at + 1]};
+        at += 2;
+      }
+      demand(at == parameters.size(), "there are more ranges than prismatic joints");
+      demand(parameters[0] >= 1 && parameters[0] <= 100, "the number of orders is ", parameters[0],
+             ", must lie in 1..100");
+      straightness.emplace(nominal, std::move(ranges), static_cast<int>(parameters[0]));
+      break;
+    }
     case Kind::transmission: demand(false, "JointTerms::add: transmissions are functions of single joints");
   }
 }
@@ -98,7 +124,36 @@ VERNIER_IMPL std::vector<double> JointTerms::parameters(JointTermBlock::Kind kin
   if (kind == Kind::gravity && gravity) return values(gravity->down());
   if (kind == Kind::hysteresis) return hysteresis;
   if (kind == Kind::tilt && tilt) return values(tilt->down());
+  if (kind == Kind::payload && payload) {
+    std::vector<double> out = values(payload->down());
+    out.push_back(payload->reference().mass);
+    out.insert(out.end(), payload->reference().centre.begin(), payload->reference().centre.end());
+    return out;
+  }
+  if (kind == Kind::straightness && straightness) {
+    std::vector<double> out{static_cast<double>(straightness->orders())};
+    for (const int guide : straightness->guides()) {
+      const JointRange& range = straightness->ranges()[static_cast<std::size_t>(guide)];
+      out.insert(out.end(), {range.lower, range.upper});
+    }
+    return out;
+  }
   return {};
+}
+
+VERNIER_IMPL void JointTerms::end_basis(const double* q, MatrixRef out) const noexcept {
+  if (tilt) tilt->basis(q, VERNIER_LATER(out).leftCols(tilt->size()));
+  if (straightness) straightness->basis(q, VERNIER_LATER(out).rightCols(straightness->size()));
+}
+
+VERNIER_IMPL Vector6 JointTerms::end_motion(const double* q, const double* coefficients, double* rates) const noexcept {
+  if (!straightness) return tilt->motion(q, coefficients, rates);
+  Vector6 out = straightness->motion(q, coefficients + (tilt ? tilt->size() : 0), rates);
+  if (!tilt) return out;
+  double of_tilts[6 * max_joints];
+  out += tilt->motion(q, coefficients, rates != nullptr ? of_tilts : nullptr);
+  for (int k = 0; rates != nullptr && k < 6 * joints; ++k) rates[k] += of_tilts[k];
+  return out;
 }
 
 VERNIER_IMPL std::vector<JointTermBlock> JointTerms::blocks() const {
@@ -111,8 +166,10 @@ VERNIER_IMPL std::vector<JointTermBlock> JointTerms::blocks() const {
   add(Kind::gear_ratio, -1, gear_ratio ? joints : 0);
   add(Kind::coupling, -1, coupling ? joints - 1 : 0);
   add(Kind::gravity, -1, gravity ? gravity->size() : 0);
+  add(Kind::payload, -1, payload ? joints : 0);
   add(Kind::hysteresis, -1, joints * static_cast<Index>(hysteresis.size()));
   add(Kind::tilt, -1, tilt ? tilt->size() : 0);
+  add(Kind::straightness, -1, straightness ? straightness->size() : 0);
   for (int i = 0; i < joints; ++i) add(Kind::transmission, i, transmission[static_cast<std::size_t>(i)].size());
   return out;
 }
@@ -126,10 +183,15 @@ VERNIER_IMPL std::vector<std::string> JointTerms::names() const {
   if (gravity)
     for (int i = 1; i <= joints; ++i)
       for (int j = i; j <= joints; ++j) out.push_back(message("sag", i, '_', j));
+  for (int i = 1; payload && i <= joints; ++i) out.push_back(message("payload", i));
   for (std::size_t w = 1; w <= hysteresis.size(); ++w)
     for (int i = 1; i <= joints; ++i) out.push_back(message("hysteresis", i, '_', w));
   for (int i = 1; tilt && i <= joints; ++i)
     for (const char* which : {"xx", "xy", "xz", "yx", "yy", "yz"}) out.push_back(message("tilt", i, '_', which));
+  if (straightness)
+    for (const int p : straightness->guides())
+      for (const char* component : {"x", "y", "z", "rx", "ry", "rz"})
+        for (int k = 1; k <= straightness->orders(); ++k) out.push_back(message("straight", p + 1, '_', component, k));
   for (int i = 1; i <= joints; ++i)
     for (const int order : transmission[static_cast<std::size_t>(i - 1)].orders)
       for (const char* function : {"cos", "sin"}) out.push_back(message(function, i, '_', order));
@@ -142,8 +204,12 @@ VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
          terms_.transmission.size(), " joints, expected ", terms_.joints);
   demand(!terms_.gravity || terms_.gravity->joints() == terms_.joints, "JointErrors: gravity compliance of ",
          terms_.gravity ? terms_.gravity->joints() : 0, " joints, expected ", terms_.joints);
+  demand(!terms_.payload || terms_.payload->joints() == terms_.joints, "JointErrors: compliance to payload of ",
+         terms_.payload ? terms_.payload->joints() : 0, " joints, expected ", terms_.joints);
   demand(!terms_.tilt || terms_.tilt->joints() == terms_.joints, "JointErrors: tilts of ",
          terms_.tilt ? terms_.tilt->joints() : 0, " joints, expected ", terms_.joints);
+  demand(!terms_.straightness || terms_.straightness->joints() == terms_.joints, "JointErrors: straightness of ",
+         terms_.straightness ? terms_.straightness->joints() : 0, " joints, expected ", terms_.joints);
   for (const Fourier& fourier : terms_.transmission) fourier.validate();
   demand(terms_.linear_ranges.empty() || terms_.linear_ranges.size() == static_cast<std::size_t>(terms_.joints),
          "JointErrors: linear ranges of ", terms_.linear_ranges.size(), " joints, expected ", terms_.joints);
@@ -159,8 +225,12 @@ VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
   harmonics_ = {terms_.transmission, {coefficients_.data() + dense, coefficients_.data() + coefficients_.size()}};
 }
 
+VERNIER_IMPL JointErrors JointErrors::carrying(const Payload& payload) const {
+  return terms_.payload ? under(terms_.payload->load(payload)) : *this;
+}
+
 VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effective, double* derivative,
-                                        const double* previous) const noexcept {
+                                        const double* previous, const PayloadLoad* load) const noexcept {
   std::copy_n(q, n, effective);
   std::fill_n(derivative, n * n, 0.0);
   for (int i = 0; i < n; ++i) derivative[i * n + i] = 1;
@@ -186,6 +256,10 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
     terms_.gravity->add(q, beta, effective, derivative);
     beta += terms_.gravity->size();
   }
+  if (terms_.payload) {
+    terms_.payload->add(q, load != nullptr ? *load : load_, beta, effective, derivative);
+    beta += n;
+  }
   for (const double width : terms_.hysteresis) {
     for (int i = 0; i < n; ++i) {
       const double step = detail::step_of(q, previous, i, width);
@@ -197,7 +271,8 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
   harmonics_.add(q, n, effective, derivative);
 }
 
-VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous) const {
+VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous,
+                                                 std::span<const PayloadLoad> loads) const {
   const auto n = static_cast<int>(joints.cols());
   MatrixX out(joints.rows(), joints.cols());
   VectorX q(n), before(n), effective(n), derivative(n * n);
@@ -206,7 +281,8 @@ VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints, c
       q(j) = joints(i, j);
       if (previous.rows() > 0) before(j) = previous(i, j);
     }
-    evaluate(q.data(), n, effective.data(), derivative.data(), previous.rows() > 0 ? before.data() : nullptr);
+    evaluate(q.data(), n, effective.data(), derivative.data(), previous.rows() > 0 ? before.data() : nullptr,
+             loads.empty() ? nullptr : &loads[static_cast<std::size_t>(i)]);
     for (Index j = 0; j < n; ++j) out(i, j) = effective(j);
   }
   return out;
@@ -223,11 +299,11 @@ VERNIER_IMPL double JointErrors::half_loop(int i) const noexcept {
 }
 
 VERNIER_IMPL void JointErrors::tilt(const double* q, Isometry3& pose, double* jacobian) const noexcept {
-  if (!terms_.tilt) return;
+  if (!tilts()) return;
   const int n = terms_.joints;
   double rates[6 * max_joints];
   const Vector6 motion =
-      terms_.tilt->motion(q, coefficients_.data() + terms_.tilt_begin(), jacobian != nullptr ? rates : nullptr);
+      terms_.end_motion(q, coefficients_.data() + terms_.end_begin(), jacobian != nullptr ? rates : nullptr);
   const Vector3 shift = VERNIER_LATER(motion).template head<3>(), turn = VERNIER_LATER(motion).template tail<3>();
   const Matrix3 rotation = exp_so3(turn);
   const Vector3 turned = rotation * translation(pose);

@@ -90,9 +90,11 @@ class ArmParameterisation {
   /// @param out           n blocks
   /// @param joint_columns whether to write `factor` also where no coefficient acts through it; else it is empty then
   /// @param warmer        temperatures of the n samples above the reference [K]; none for zero
+  /// @param payloads      n x 4, see `Dataset::payloads`; no rows for the reference payload
   VERNIER_API std::vector<Isometry3> linearise(int station, const ConstMatrixRef& joints,
                                                const ConstMatrixRef& previous, RowBlock* out, bool joint_columns = true,
-                                               const ConstVectorRef& warmer = VectorX()) const;
+                                               const ConstVectorRef& warmer = VectorX(),
+                                               const ConstMatrixRef& payloads = MatrixX()) const;
   /// Values of the transmissions' functions at q, in units of scales.
   VERNIER_API void transmission_values(const double* q, VectorX& out) const;
 

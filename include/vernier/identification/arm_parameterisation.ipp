@@ -126,14 +126,14 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::poses(int station, cons
 
 namespace detail {
 
-/// Moves a pose and its columns by the tilts of joint frames, and writes the columns of their coefficients.
+/// Moves a pose and its columns by tilts of joint frames and by guides, and writes the columns of their coefficients.
 /// @param of_base whether each of the first columns turns the arm about its base, and not about a point of the arm
 VERNIER_LOCAL void tilt_columns(const JointErrors& errors, const VectorX& q, const Isometry3& base,
                                 const std::vector<bool>& of_base, Index first, const ConstVectorRef& scales,
                                 Isometry3& pose, RowBlock& rows) {
-  const GravityTilt& tilt = *errors.terms().tilt;
-  const Index begin = errors.terms().tilt_begin();
-  const Vector6 at = tilt.motion(q.data(), errors.coefficients().data() + begin);
+  const JointTerms& terms = errors.terms();
+  const Index begin = terms.end_begin();
+  const Vector6 at = terms.end_motion(q.data(), errors.coefficients().data() + begin);
   const Vector3 shift = VERNIER_LATER(at).template head<3>(), turn = VERNIER_LATER(at).template tail<3>(),
                 before = translation(pose);
   const Matrix3 to_base = rotation(base), tilted = exp_so3(turn);
@@ -156,9 +156,9 @@ VERNIER_LOCAL void tilt_columns(const JointErrors& errors, const VectorX& q, con
       std::copy_n(linear.data(), 3, column);
       std::copy_n(angular.data(), 3, column + 3);
     }
-  MatrixX basis(6, tilt.size());
-  tilt.basis(q.data(), basis);
-  for (Index k = 0; k < tilt.size(); ++k) {
+  MatrixX basis(6, terms.num_end_terms());
+  terms.end_basis(q.data(), basis);
+  for (Index k = 0; k < basis.cols(); ++k) {
     const Vector3 translates = to_base * Vector3(basis(0, k), basis(1, k), basis(2, k));
     const Vector3 omega = rate * Vector3(basis(3, k), basis(4, k), basis(5, k));
     const Vector3 linear = omega.cross(turned) + translates;
@@ -173,16 +173,19 @@ VERNIER_LOCAL void tilt_columns(const JointErrors& errors, const VectorX& q, con
 
 VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, const ConstMatrixRef& joints,
                                                                    const ConstMatrixRef& previous, RowBlock* out,
-                                                                   bool joint_columns,
-                                                                   const ConstVectorRef& warmer) const {
+                                                                   bool joint_columns, const ConstVectorRef& warmer,
+                                                                   const ConstMatrixRef& payloads) const {
   const ArmGeometry& arm = geometry(station);
   const int n = arm.joints();
   const Index few = terms().num_dense_terms(), of_geometry = static_cast<Index>(unknowns_.size());
+  std::vector<PayloadLoad> loads;
+  for (Index i = 0; i < payloads.rows() && terms().payload; ++i)
+    loads.push_back(terms().payload->load(Payload::of(payloads, i).at(translation(arm.tool().isometry()))));
   PosesAndJacobians at;
   if (errors_.empty())
     arm.poses_and_parameter_jacobians(joints, at);
   else
-    arm.poses_and_parameter_jacobians(errors_.effective_rows(joints, previous), at);
+    arm.poses_and_parameter_jacobians(errors_.effective_rows(joints, previous, loads), at);
   const Index count = joints.rows();
   const bool factored = joint_columns || !errors_.empty() || terms().size() > 0;
   VectorX q(n), before(n);
@@ -224,7 +227,8 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
       if (previous.rows() > 0) before(j) = previous(i, j);
     }
     if (few > 0) {
-      terms().dense_basis(q.data(), previous.rows() > 0 ? before.data() : nullptr, basis);
+      terms().dense_basis(q.data(), previous.rows() > 0 ? before.data() : nullptr, basis,
+                          loads.empty() ? PayloadLoad{} : loads[static_cast<std::size_t>(i)]);
       for (Index k = 0; k < few; ++k) {
         Vector6 sum = Vector6::Zero();
         for (Index j = 0; j < n; ++j)
@@ -234,7 +238,7 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
     }
     transmission_values(q.data(), rows.functions);
     if (errors_.tilts())
-      detail::tilt_columns(errors_, q, arm.base().isometry(), of_base, of_geometry + terms().tilt_begin(),
+      detail::tilt_columns(errors_, q, arm.base().isometry(), of_base, of_geometry + terms().end_begin(),
                            coefficient_scales_, at.poses[static_cast<std::size_t>(i)], rows);
   }
   return std::move(at.poses);

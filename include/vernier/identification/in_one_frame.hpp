@@ -25,7 +25,8 @@ VERNIER_API void move_poses(const Isometry3& motion, const PointRows& positions,
 /// All stations as one set of poses in the frame of the first, given the bases.
 /// @param stations         one set of poses a place; a single one is returned as it is
 /// @param bases            base frame of the arm as seen from each station; unused for a single one
-/// @param use_orientations whether orientations are kept, where every station has them, as temperatures are
+/// @param use_orientations whether orientations are kept, where every station has them, as temperatures and payloads
+/// are
 /// @throws std::invalid_argument for no stations, or another number of bases
 template <int N, RangeOf<Dataset<N>> Stations>
 Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& bases, bool use_orientations = true) {
@@ -34,16 +35,18 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
   demand(bases.size() == std::size(stations), "in_one_frame: ", bases.size(), " bases for ", std::size(stations),
          " stations");
   Index rows = 0;
-  bool oriented = use_orientations, thermal = true, correlated = true;
+  bool oriented = use_orientations, thermal = true, loaded = true, correlated = true;
   for (const Dataset<N>& data : stations) {
     rows += data.size();
     oriented = oriented && data.has_orientations();
     thermal = thermal && data.temperatures().size() > 0;
+    loaded = loaded && data.payloads().rows() > 0;
     correlated = correlated && !data.covariances().empty();
   }
   JointRows<N> joints(rows, N);
   JointRows<N> previous(rows, N);
   VectorX times(rows), temperatures(thermal ? rows : 0);
+  MatrixX payloads(loaded ? rows : 0, 4);
   PointRows positions(rows, 3), orientations(oriented ? rows : 0, 3);
   Index at = 0;
   std::vector<Matrix6> covariances;
@@ -53,6 +56,7 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
     joints.middleRows(at, data.size()) = data.joints();
     previous.middleRows(at, data.size()) = data.previous();
     times.segment(at, data.size()) = data.times();
+    if (loaded) payloads.middleRows(at, data.size()) = data.payloads();
     if (thermal) temperatures.segment(at, data.size()) = data.temperatures();
     detail::move_poses(composed(bases.front(), inverse_of(bases[s])), data.positions(), data.orientations(), at,
                        positions, orientations);
@@ -66,6 +70,7 @@ Dataset<N> in_one_frame(const Stations& stations, const std::vector<Isometry3>& 
       .approached_from(previous)
       .measured_at(times)
       .at_temperatures(temperatures)
+      .carrying(payloads)
       .with_covariances(covariances)
       .from(origin);
 }

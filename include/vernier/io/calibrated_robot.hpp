@@ -94,6 +94,16 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
     return out;
   }
 
+  /// This robot under a payload, in place of the mean one of its measurements, see `ErrorModel::carrying`. Its radii
+  /// count what is unknown of compliance to payload.
+  CalibratedRobot carrying(const Payload& payload) const {
+    CalibratedRobot out = *this;
+    out.model_ = model_.carrying(payload);
+    out.payload_ = payload;
+    if (corrected_) out.corrected_.emplace(out.model_, corrected_->learned(), corrected_->coverage());
+    return out;
+  }
+
   /// This robot with a controller whose joints have the limits; throws for a map of another number of joints.
   CalibratedRobot with_controller(const ControllerMap& controller) const {
     CalibratedRobot out = *this;
@@ -205,7 +215,13 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
     }
     temperatures.setConstant(model_.thermal() == nullptr ? std::numeric_limits<double>::quiet_NaN()
                                                          : model_.thermal()->reference);
-    const std::vector<Matrix6> covariances = estimate_->visit_covariances(q, gates, 0, previous, temperatures);
+    MatrixX payloads(std::isfinite(payload_.mass) ? n : 0, 4);
+    for (Index k = 0; k < payloads.rows(); ++k) {
+      payloads(k, 0) = payload_.mass;
+      for (Index r = 0; r < 3; ++r) payloads(k, 1 + r) = payload_.centre(r);
+    }
+    const std::vector<Matrix6> covariances =
+        estimate_->visit_covariances(q, gates, 0, previous, temperatures, payloads);
     for (std::size_t k = 0; k < rows.size(); ++k)
       out[static_cast<std::size_t>(rows[k])] = radius_95(covariances[k].template topLeftCorner<3, 3>());
     return out;
@@ -294,7 +310,8 @@ class CalibratedRobot : public ChecksJoints<CalibratedRobot<N, Convention>> {
   std::optional<Corrected> corrected_{};
   ControllerMap controller_{};
   JointChange<N> change_{};
-  std::shared_ptr<const ErrorModelEstimate> estimate_{};  // shared, for it is large and never changes
+  Payload payload_{.mass = std::numeric_limits<double>::quiet_NaN()};  // not finite: that of the model
+  std::shared_ptr<const ErrorModelEstimate> estimate_{};               // shared, for it is large and never changes
 };
 
 }  // namespace vernier

@@ -40,7 +40,7 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
     for (const JointTermBlock& block : arm.errors.terms().blocks()) {
       const JointTermTraits& row = traits_of(block.kind);
       out.insert(c_capitals(row.key));
-      add("LINKS", row.parameters == std::string_view("down"));  // gravity acts on the links
+      add("LINKS", row.links);
     }
   };
   add_terms(model.identified);
@@ -55,8 +55,9 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
   add("LEARNED", model.learned.has_value());
   add("GATES", model.fallback || model.learned);
   add("LINEAR", out.contains("GEAR_RATIO") || out.contains("COUPLING"));
+  add("MOTION", out.contains("TILT") || out.contains("STRAIGHTNESS"));
   add("LOG", out.contains("ORIENTED") || out.contains("FALLBACK"));
-  add("EXP", out.contains("TILT") || out.contains("FALLBACK"));
+  add("EXP", out.contains("MOTION") || out.contains("FALLBACK"));
   if (!model.learned) return out;
   const HiddenLayer& layer = std::get_if<FittedNetwork>(&model.learned->function)->layer;
   constexpr const char* maps[] = {"MAP_RAW", "MAP_SINES_AND_COSINES", "MAP_PRODUCTS"};
@@ -86,6 +87,10 @@ VERNIER_LOCAL std::string c_preamble(const ModelData& model, const CExport& opti
   if (model.thermal)
     out +=
         row("temperature:     ", message(model.thermal->reference, " deg C; how the arm changes with it is left out"));
+  if (const auto& payload = model.identified.errors.terms().payload) {
+    const double more = model.identified.errors.load().weight / standard_gravity;
+    out += row("payload:         ", message(payload->reference().mass + more, " kg"));
+  }
   const std::string capitals = c_capitals(options.name);
   out += message(" *\n * C99 and C++11. All functions are static inline; to compile a library of them, define ",
                  capitals, "_API as empty:\n *   cc -O2 -shared -fPIC -D", capitals, "_API= -x c THIS_FILE -o ",

@@ -62,6 +62,11 @@ class SavedModel {
   /// SHA-256 of the bytes that were read, in hexadecimal.
   const std::string& hash() const { return hash_; }
 
+  /// Whether its measurements state what the arm carried.
+  bool states_payload() const { return data_.identified.errors.terms().payload.has_value(); }
+  /// This model under a payload, see `ErrorModel::carrying`.
+  VERNIER_API SavedModel carrying(const Payload& payload) const;
+
   /// The calibrated arm of N joints: `as<6>()`, or `as<6, ModifiedDh>()`.
   /// @throws DataError naming the file, for another number of joints or the other convention
   template <int N, class Convention = StandardDh>

@@ -11,4 +11,14 @@ VERNIER_IMPL SavedModel read_model(const std::string& path) {
   return detail::SavedModelParts::make(path, sha256(content), detail::parse_model(content, path));
 }
 
+VERNIER_IMPL SavedModel SavedModel::carrying(const Payload& payload) const {
+  SavedModel out = *this;
+  const auto load = [&](FittedArm& arm) {
+    arm.errors = arm.errors.carrying(payload.at(translation(arm.geometry.tool().isometry())));
+  };
+  load(out.data_.identified);
+  if (out.data_.fallback) load(*out.data_.fallback);
+  return out;
+}
+
 }  // namespace vernier

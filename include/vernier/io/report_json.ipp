@@ -102,6 +102,8 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
           {"stages", stages_to_json(report.stages)},
           {"chosen", report.chosen.key()},
           {"mean_temperature_c", report.mean_temperature ? Json(*report.mean_temperature) : Json()},
+          {"payload",
+           report.payload ? Json{{"mean_kg", report.payload->mean}, {"estimated", report.payload->estimated}} : Json()},
           {"blocks", blocks},
           {"learners", trials},
           {"prior", report.prior ? Json{{"name", report.prior->name},

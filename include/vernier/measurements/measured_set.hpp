@@ -55,6 +55,7 @@ class MeasuredSet {
   MatrixX seen_from{};
   VectorX times{};         ///< n, when each was measured; or none
   VectorX temperatures{};  ///< n [deg C]; or none
+  MatrixX payloads{};      ///< n x 4, see `Dataset::payloads`; or no rows
   RowOrigin origin{};      ///< where the rows stand in files
 
   /// Number of measurements.
@@ -120,6 +121,7 @@ class MeasuredSet {
       out.seen_from = set.seen_from;
       out.times = set.times;
       out.temperatures = set.temperatures;
+      out.payloads = set.payloads;
       out.origin = set.origin;
       return out;
     }

@@ -92,6 +92,7 @@ class Measurements {
     set.previous = poses.previous();
     set.times = poses.times();
     set.temperatures = poses.temperatures();
+    set.payloads = poses.payloads();
     set.origin = poses.origin();
     sets_.insert(sets_.begin() + static_cast<std::ptrdiff_t>(poses_.size()), std::move(set));
     poses_.push_back(std::move(poses));

@@ -116,9 +116,8 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
          "plan_measurements: no region whose variance could be reduced");
   const PlannedCalibration planned{nominal,         options.geometry, options.errors,
                                    options.sensors, options.oriented, options.count + input.measured.rows()};
-  const Index block = options.oriented ? 6 : 3;
-  const MatrixX rows = expected_rows(planned, input.candidates, input.candidates_previous);
-  MatrixX measured(0, rows.cols());
+  const CandidateRows rows = expected_candidate_rows(planned, input.candidates, input.candidates_previous);
+  MatrixX measured(0, rows.unknowns());
   if (input.measured.rows() > 0) measured = expected_rows(planned, input.measured, input.measured_previous);
 
   constexpr Index region_points = 150;
@@ -139,16 +138,17 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   for (Index c = 0; c < bins_measured.size(); ++c)
     if (const int bin = bins_measured.data()[c]; bin >= 0) wanted(bin) = (std::max)(0, wanted(bin) - 1);
   if (options.bin_count > 0) design.coverage = {bins_of, wanted};
-  const PoseDesign found = design_poses(rows, block, design, measured, region);
+  const PoseDesign found = design_poses(rows, design, measured, region);
 
   PlannedMeasurements out;
   out.chosen = found.chosen;
-  out.unknowns = rows.cols();
+  out.unknowns = rows.unknowns();
   out.log_det = found.log_det;
   const VectorX relative = found.region_variance / found.region_variance(options.count);
   out.relative_error = VERNIER_LATER(relative).cwiseSqrt();
   if (options.bound_iterations > 0 && measured.rows() == 0)
-    out.bound = information_bound(rows, block, options.count, options.bound_iterations);
+    out.bound = information_bound(VERNIER_LATER(rows.columns(0, n)).transpose(), rows.block, options.count,
+                                  options.bound_iterations);
   for (const Index c : out.chosen)
     for (Index j = 0; j < bins_of.cols(); ++j) wanted(bins_of(c, j)) = 0;
   if (options.bin_count > 0) wanted = found.missing;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vernier/core/types.hpp"
+#include "vernier/planning/detail/candidate_rows.hpp"
 
 namespace vernier {
 
@@ -41,8 +42,8 @@ struct PoseDesign {
 ///
 /// Unknowns are in units of their prior sizes, so the prior is N(0, I). With S the covariance given what was chosen,
 /// a candidate with rows A gains `log det(I + V)`, `V = A S A'`, of information, and reduces the sum of the region's
-/// variances by `tr((I + V)^-1 K K')`, `K = A S B'`. V and K are kept for each candidate and updated by the rows of the
-/// choices; S is never computed. Information never grows by other choices, so most candidates need no update.
+/// variances by `tr((I + V)^-1 K K')`, `K = A S B'`. V and K are kept for each candidate and updated by the choices.
+/// Information never grows by other choices, so most candidates need no update at once.
 /// @param rows     whitened rows of all candidates, `block` a candidate, one column an unknown
 /// @param block    rows a candidate, 1 to 6
 /// @param options  how many, and by which criterion
@@ -50,14 +51,21 @@ struct PoseDesign {
 /// @param region   rows of what is to be predicted, whose variance is meant, three a pose; may have no rows, unless the
 ///                 criterion is `region_variance`
 /// @throws std::invalid_argument for sizes that do not match, or values that are not finite
-/// @complexity at most O(count n b^2 p) for n candidates of b rows and p unknowns, memory O(n b p) whatever the count;
-///             O(p^3 + n b p^2) more where there
-/// are
-///             measured rows, O(n b p r) more for `region_variance` over r rows
+/// @complexity O(count (n b^2 p + b p^2)) for n candidates of b rows and p unknowns, memory O(n b p + p^2) whatever the
+///             count; O(p^3 + n b p^2) more where there are measured rows, O(count n b^2 r) more for `region_variance`
+///             over r rows
 /// @cite Chaloner and Verdinelli 1995 (criteria); Minoux 1978 (lazy greedy choice)
 VERNIER_API PoseDesign design_poses(const ConstMatrixRef& rows, Index block, const PoseDesignOptions& options,
                                     const ConstMatrixRef& measured = MatrixX(),
                                     const ConstMatrixRef& region = MatrixX());
+
+namespace detail {
+
+/// Chooses candidates as `vernier::design_poses`, of rows that are products of few numbers.
+VERNIER_API PoseDesign design_poses(const CandidateRows& rows, const PoseDesignOptions& options,
+                                    const ConstMatrixRef& measured, const ConstMatrixRef& region);
+
+}  // namespace detail
 
 /// A bound on the information of any choice, by concavity: log det at fractional weights `0 <= w <= 1` of sum `count`,
 /// plus the `count` largest entries of its gradient, less what the weights have of it. With many unknowns it is loose.

@@ -33,108 +33,125 @@ VERNIER_LOCAL Matrix6 factor_of_sum(const ConstMatrixRef& v) {
   return out;
 }
 
-/// Solves for columns in which unknowns of the prior precision I + measured' measured have the prior precision I.
-VERNIER_LOCAL void account_for_measured(const ConstMatrixRef& measured, MatrixX& candidates, MatrixX& region) {
-  MatrixX precision = MatrixX::Identity(measured.cols(), measured.cols());
-  add_transposed_product(precision, measured, measured);
-  demand(cholesky(precision), "design_poses: the rows are not usable");
-  solve_lower(precision, candidates);
-  solve_lower(precision, region);
-}
-
-/// A design that grows. Of rows chosen so far, P, it keeps the Cholesky factor F of `I + P P'`; a candidate with
-/// rows A then has `V = A A' - known' known`, `F known = P A'`, which is brought up to date where it is looked at. P
-/// has at most as many rows as there are unknowns: then all columns are solved for unknowns with the prior I again, and
-/// P begins anew. So memory and time of a choice do not grow with the number of choices.
+/// A design that grows, with S, the covariance of the unknowns. A candidate of rows A has `V = A S A'`. A choice takes
+/// `G G'` off S, `G = S A' F^-T` for the Cholesky factor F of I + V, so it takes `W' W`, `W = G' A'`, off V of another.
+/// V is brought up to date where it is looked at, and that of all candidates after every eighth choice, by products of
+/// large matrices. S follows then, too. So memory and time of a choice do not grow with the number of choices.
 class GrowingDesign {
  public:
-  /// @param candidates p x n b, what the rows are transposed
-  /// @param region     p x r, likewise
-  VERNIER_LOCAL GrowingDesign(MatrixX candidates, MatrixX region, Index block, const PoseDesignOptions& options)
-      : columns_(std::move(candidates)),
+  /// @param region unknowns x r, rows transposed
+  VERNIER_LOCAL GrowingDesign(const CandidateRows& rows, const ConstMatrixRef& measured, MatrixX region,
+                              const PoseDesignOptions& options)
+      : rows_(rows),
         region_(std::move(region)),
-        block_(block),
-        kept_((std::min)(options.count, (columns_.rows() + block - 1) / block)),
-        picks_(columns_.rows(), kept_ * block),
-        factor_(MatrixX::Zero(kept_ * block, kept_ * block)),
-        known_(kept_ * block, columns_.cols()),
-        known_region_(kept_ * block, region_.cols()),
-        variance_(block, columns_.cols()),
-        level_(static_cast<std::size_t>(size()), 0),
-        by_region_(options.criterion == DesignCriterion::region_variance),
-        region_variance_(squared_column_norms(region_)) {
-    begin();
+        block_(rows.block),
+        covariance_(MatrixX::Identity(rows.unknowns(), rows.unknowns())),
+        directions_(rows.unknowns(), kept * block_),
+        of_region_(region_.cols(), kept * block_),
+        variance_(MatrixX::Zero(block_, rows.dense.cols())),
+        level_(static_cast<std::size_t>(size()), 0) {
+    MatrixX factor(0, 0);  // of the precision, where there are measured rows
+    if (measured.rows() > 0) {
+      factor = covariance_;
+      add_transposed_product(factor, measured, measured);
+      demand(cholesky(factor), "design_poses: the rows are not usable");
+      covariance_ = inverse_from_cholesky(factor);
+    }
+    MatrixX region_then = region_;
+    if (factor.size() > 0) solve_lower(factor, region_then);
+    region_variance_ = squared_column_norms(region_then);
+    const bool by_region = options.criterion == DesignCriterion::region_variance;
+    if (by_region) to_region_ = MatrixX::Zero(region_.cols(), rows.dense.cols());
+    in_parts([&](Index first, Index count) {
+      MatrixX columns = rows_.columns(first, count);
+      if (factor.size() > 0) solve_lower(factor, columns);
+      for (Index c = 0; c < count; ++c) add_to_variance(first + c, squared_in(columns, c), 1);
+      if (by_region)
+        add_transposed_product(VERNIER_LATER(to_region_).middleCols(first * block_, count * block_), region_then,
+                               columns);
+    });
   }
 
   /// Number of candidates.
-  Index size() const { return columns_.cols() / block_; }
+  Index size() const { return rows_.size(); }
   /// Whether V of a candidate is that of all choices.
   bool up_to_date(Index c) const { return level_[static_cast<std::size_t>(c)] == chosen_; }
-  /// Brings V of some candidates up to date, all of which were last at the same time.
+  /// Brings V of some candidates up to date.
   VERNIER_LOCAL void update(Index first, Index count) {
-    const Index from = level_[static_cast<std::size_t>(first)] * block_, rows = chosen_ * block_ - from;
-    const MatrixX tail = solved(columns_, known_, first * block_, count * block_, from);
-    VERNIER_LATER(known_).block(from, first * block_, rows, count * block_) = tail;
-    for (Index c = 0; c < count; ++c) {
-      add_to_variance(first + c, products(tail, c), -1);
-      level_[static_cast<std::size_t>(first + c)] = chosen_;
+    const auto level = [&](Index c) -> Index& { return level_[static_cast<std::size_t>(c)]; };
+    Index oldest = level(first);
+    for (Index c = first; c < first + count; ++c) oldest = (std::min)(oldest, level(c));
+    const Index from = oldest * block_, rows = chosen_ * block_ - from;
+    if (rows == 0) return;
+    const MatrixX change = rows_.products(VERNIER_LATER(directions_).middleCols(from, rows), first, count);
+    for (Index c = first; c < first + count; ++c) {
+      add_to_variance(c, squared_in(change, c - first, level(c) * block_ - from), -1);
+      level(c) = chosen_;
     }
-    if (to_region_.size() > 0)
-      add_transposed_product(VERNIER_LATER(to_region_).middleCols(first * block_, count * block_),
-                             VERNIER_LATER(known_region_).middleRows(from, rows), tail, -1);
+    if (to_region_.size() > 0)  // by a region all candidates are always of one level
+      add_product(VERNIER_LATER(to_region_).middleCols(first * block_, count * block_),
+                  VERNIER_LATER(of_region_).middleCols(from, rows), change, -1);
+  }
+  /// Brings V of all candidates up to date, and the covariance as well when that is due.
+  VERNIER_LOCAL void update_all() {
+    in_parts([&](Index first, Index count) { update(first, count); });
+    if (chosen_ < kept) return;
+    add_product(covariance_, directions_, VERNIER_LATER(directions_).transpose(), -1);
+    chosen_ = 0;
+    std::fill(level_.begin(), level_.end(), Index{0});
   }
   /// Information of a candidate that is up to date [nat].
   VERNIER_LOCAL double information(Index c) const { return cholesky_log_determinant(factor(c)); }
   /// By how much it reduces the sum of the region's variances.
   VERNIER_LOCAL double reduction(Index c) const {
-    Matrix6 sum = products(to_region_, c);
+    Matrix6 sum = squared_in(to_region_, c);
     solve_cholesky(factor(c), sum);
     return sum.trace();
   }
   /// Chooses a candidate that is up to date.
-  /// @return whether all others are up to date then, because P began anew
-  VERNIER_LOCAL bool choose(Index c) {
+  VERNIER_LOCAL void choose(Index c) {
     const Index at = chosen_ * block_;
-    VERNIER_LATER(picks_).middleCols(at, block_) = VERNIER_LATER(columns_).middleCols(c * block_, block_);
+    MatrixX gain = VERNIER_LATER(rows_.products(covariance_, c, 1));  // S A', S as of the last eighth choice
+    const auto before = VERNIER_LATER(directions_).leftCols(at);
+    add_product(gain, before, rows_.products(before, c, 1), -1);
     const Matrix6 own = factor(c);
-    for (Index a = 0; a < block_; ++a) {
-      for (Index k = 0; k < at; ++k) factor_(at + a, k) = known_(k, c * block_ + a);
-      for (Index b = 0; b < block_; ++b) factor_(at + a, at + b) = own(a, b);
+    for (Index a = 0; a < block_; ++a) {  // G F' = S A'
+      for (Index b = 0; b < a; ++b)
+        for (Index k = 0; k < gain.rows(); ++k) gain(k, a) -= own(a, b) * gain(k, b);
+      for (Index k = 0; k < gain.rows(); ++k) gain(k, a) /= own(a, a);
+    }
+    VERNIER_LATER(directions_).middleCols(at, block_) = gain;
+    if (region_.cols() > 0) {
+      const MatrixX change = transposed_matrix_product(region_, gain);
+      VERNIER_LATER(of_region_).middleCols(at, block_) = change;
+      region_variance_ -= squared_row_norms(change);
     }
     ++chosen_;
-    if (region_.cols() > 0) {
-      const MatrixX tail = solved(region_, known_region_, 0, region_.cols(), at);
-      VERNIER_LATER(known_region_).middleRows(at, block_) = tail;
-      region_variance_ -= squared_column_norms(tail);
-    }
-    if (chosen_ < kept_) return false;
-    account_for_measured(VERNIER_LATER(picks_).transpose(), columns_, region_);
-    chosen_ = 0;
-    begin();
-    return true;
   }
+  /// Whether `update_all` is due.
+  bool full() const { return chosen_ == kept; }
   /// Mean variance of the region's points, three rows each.
   VERNIER_LOCAL double region_variance() const {
     return 3 * region_variance_.sum() / static_cast<double>(region_.cols());
   }
 
  private:
-  /// V of all candidates, of which none is chosen.
-  VERNIER_LOCAL void begin() {
-    variance_.setZero();
-    std::fill(level_.begin(), level_.end(), Index{0});
-    for (Index c = 0; c < size(); ++c) add_to_variance(c, products(columns_, c), 1);
-    if (!by_region_) return;
-    to_region_.setZero(region_.cols(), columns_.cols());
-    add_transposed_product(to_region_, region_, columns_);
+  static constexpr Index kept = 8;  // choices from one renewal to the next
+  static constexpr Index part = 256;
+
+  /// Calls f(first, count) for all candidates, some at a time.
+  template <class F>
+  void in_parts(const F& f) const {
+    for (Index first = 0; first < size(); first += part) f(first, (std::min)(part, size() - first));
   }
   /// Products of a candidate's columns with each other; zero beyond them.
-  VERNIER_LOCAL Matrix6 products(const MatrixX& columns, Index c) const {
+  /// @param from first row that counts
+  VERNIER_LOCAL Matrix6 squared_in(const MatrixX& columns, Index c, Index from = 0) const {
+    const Index rows = columns.rows() - from;
+    const auto column = [&](Index k) { return VERNIER_LATER(columns).col(c * block_ + k).tail(rows); };
     Matrix6 out = Matrix6::Zero();
     for (Index a = 0; a < block_; ++a)
-      for (Index b = 0; b <= a; ++b)
-        out(a, b) = out(b, a) =
-            VERNIER_LATER(columns).col(c * block_ + a).dot(VERNIER_LATER(columns).col(c * block_ + b));
+      for (Index b = 0; b <= a; ++b) out(a, b) = out(b, a) = column(a).dot(column(b));
     return out;
   }
   VERNIER_LOCAL void add_to_variance(Index c, const Matrix6& change, double sign) {
@@ -145,35 +162,22 @@ class GrowingDesign {
   VERNIER_LOCAL Matrix6 factor(Index c) const {
     return factor_of_sum(VERNIER_LATER(variance_).middleCols(c * block_, block_));
   }
-  /// Rows `from` .. of some columns of the solution of `F known = P' columns`, of which those before are known.
-  VERNIER_LOCAL MatrixX solved(const MatrixX& columns, const MatrixX& known, Index first, Index count,
-                               Index from) const {
-    const Index rows = chosen_ * block_ - from;
-    MatrixX out = MatrixX::Zero(rows, count);
-    add_transposed_product(out, VERNIER_LATER(picks_).middleCols(from, rows),
-                           VERNIER_LATER(columns).middleCols(first, count));
-    add_product(out, VERNIER_LATER(factor_).block(from, 0, rows, from),
-                VERNIER_LATER(known).block(0, first, from, count), -1);
-    solve_lower(VERNIER_LATER(factor_).block(from, from, rows, rows), out);
-    return out;
-  }
 
-  MatrixX columns_, region_;
-  Index block_, chosen_ = 0;
-  Index kept_;  // choices after which P begins anew
-  MatrixX picks_, factor_, known_, known_region_;
-  MatrixX variance_;          // V of each candidate, beside each other
-  MatrixX to_region_{};       // K of each candidate, likewise
-  std::vector<Index> level_;  // number of choices that V of each candidate knows
-  bool by_region_;
-  VectorX region_variance_;  // of each row
+  const CandidateRows& rows_;
+  MatrixX region_;
+  Index block_, chosen_ = 0;   // choices since the last renewal
+  MatrixX covariance_;         // S as of then
+  MatrixX directions_;         // G of each choice since, beside each other
+  MatrixX of_region_;          // products of the region's rows and those
+  MatrixX variance_;           // V of each candidate, beside each other
+  MatrixX to_region_{};        // K of each candidate, likewise
+  std::vector<Index> level_;   // number of choices since then that V of each candidate knows
+  VectorX region_variance_{};  // of each row
 };
 
-VERNIER_LOCAL void check_design(const ConstMatrixRef& rows, Index block, const ConstMatrixRef& measured,
-                                const ConstMatrixRef& region, const PoseDesignOptions& options) {
-  demand(block >= 1 && block <= 6, "design_poses: ", block, " rows a candidate, must be 1 to 6");
-  demand(rows.rows() % block == 0, "design_poses: ", rows.rows(), " rows are no multiple of ", block);
-  const Index n = rows.rows() / block, p = rows.cols();
+VERNIER_LOCAL void check_design(const CandidateRows& rows, const ConstMatrixRef& measured, const ConstMatrixRef& region,
+                                const PoseDesignOptions& options) {
+  const Index n = rows.size(), p = rows.unknowns();
   demand(options.count >= 0 && options.count <= n, "design_poses: ", options.count, " of ", n, " candidates");
   demand(measured.rows() == 0 || measured.cols() == p, "design_poses: measured rows of ", measured.cols(),
          " unknowns, candidates of ", p);
@@ -182,7 +186,7 @@ VERNIER_LOCAL void check_design(const ConstMatrixRef& rows, Index block, const C
   demand(region.rows() % 3 == 0, "design_poses: ", region.rows(), " rows of the region are no multiple of 3");
   demand(options.criterion != DesignCriterion::region_variance || region.rows() > 0,
          "design_poses: no region whose variance could be reduced");
-  demand(all_finite(rows) && all_finite(measured) && all_finite(region), "design_poses: a row is not finite");
+  demand(rows.finite() && all_finite(measured) && all_finite(region), "design_poses: a row is not finite");
   const Eigen::MatrixXi& bins = options.coverage.bins;
   demand(bins.rows() == 0 || bins.rows() == n, "design_poses: bins of ", bins.rows(), " candidates, expected ", n);
   demand(bins.size() == 0 ||
@@ -204,20 +208,17 @@ struct DesignOffer {
   }
 };
 
-}  // namespace detail
-
-VERNIER_IMPL PoseDesign design_poses(const ConstMatrixRef& rows, Index block, const PoseDesignOptions& options,
+VERNIER_IMPL PoseDesign design_poses(const CandidateRows& rows, const PoseDesignOptions& options,
                                      const ConstMatrixRef& measured, const ConstMatrixRef& region) {
-  detail::check_design(rows, block, measured, region, options);
+  check_design(rows, measured, region, options);
   const Eigen::MatrixXi& bins = options.coverage.bins;
   const bool by_region = options.criterion == DesignCriterion::region_variance;
   PoseDesign out;
   out.missing = options.coverage.missing;
   out.log_det.setZero(options.count + 1);
-  MatrixX candidates = VERNIER_LATER(rows).transpose(),
-          to_predict = region.rows() > 0 ? MatrixX(VERNIER_LATER(region).transpose()) : MatrixX(rows.cols(), 0);
-  if (measured.rows() > 0) detail::account_for_measured(measured, candidates, to_predict);
-  detail::GrowingDesign design(std::move(candidates), std::move(to_predict), block, options);
+  GrowingDesign design(rows, measured,
+                       region.rows() > 0 ? MatrixX(VERNIER_LATER(region).transpose()) : MatrixX(rows.unknowns(), 0),
+                       options);
   if (region.rows() > 0) {
     out.region_variance.resize(options.count + 1);
     out.region_variance(0) = design.region_variance();
@@ -228,16 +229,15 @@ VERNIER_IMPL PoseDesign design_poses(const ConstMatrixRef& rows, Index block, co
     return sum;
   };
   const auto offer = [&](Index c) {
-    return detail::DesignOffer{covered(c), by_region ? design.reduction(c) : design.information(c), c};
+    return DesignOffer{covered(c), by_region ? design.reduction(c) : design.information(c), c};
   };
-  std::vector<detail::DesignOffer> heap;
+  std::vector<DesignOffer> heap;
   for (Index c = 0; c < design.size(); ++c) heap.push_back(offer(c));
   std::make_heap(heap.begin(), heap.end());
-  bool all_known = false;
   for (Index step = 0; step < options.count; ++step) {
-    if (by_region && step > 0 && !all_known) design.update(0, design.size());  // reductions may also grow by a choice
-    if (all_known || (by_region && step > 0)) {
-      for (detail::DesignOffer& of : heap) of = offer(of.candidate);
+    if (design.full() || (by_region && step > 0)) {  // reductions may also grow by a choice
+      design.update_all();
+      for (DesignOffer& of : heap) of = offer(of.candidate);
       std::make_heap(heap.begin(), heap.end());
     }
     // information and missing bins never grow by a choice, so offers of before are upper bounds
@@ -257,10 +257,21 @@ VERNIER_IMPL PoseDesign design_poses(const ConstMatrixRef& rows, Index block, co
       int& missing = out.missing(bins(best, k));
       missing = (std::max)(0, missing - 1);
     }
-    all_known = design.choose(best);
+    design.choose(best);
     if (region.rows() > 0) out.region_variance(step + 1) = design.region_variance();
   }
   return out;
+}
+
+}  // namespace detail
+
+VERNIER_IMPL PoseDesign design_poses(const ConstMatrixRef& rows, Index block, const PoseDesignOptions& options,
+                                     const ConstMatrixRef& measured, const ConstMatrixRef& region) {
+  demand(block >= 1 && block <= 6, "design_poses: ", block, " rows a candidate, must be 1 to 6");
+  demand(rows.rows() % block == 0, "design_poses: ", rows.rows(), " rows are no multiple of ", block);
+  detail::CandidateRows candidates{.block = block};
+  candidates.dense = VERNIER_LATER(rows).transpose();
+  return detail::design_poses(candidates, options, measured, region);
 }
 
 namespace detail {

@@ -126,11 +126,17 @@ Reregistered<Chain> reregister(const ErrorModel<Chain>& model, const Measurement
     poses.resize(static_cast<std::size_t>(data.size()));
     jacobians.resize(6, N * data.size());
     const bool warm = now.thermal() != nullptr && data.temperatures().size() > 0;
+    const bool loaded = data.payloads().rows() > 0;
     for (Index i = 0; i < data.size(); ++i) {
       const auto visit = [&](const ErrorModel<Chain>& arm) {
         return arm.approached_from(configuration(data.previous(), i)).pose_and_jacobian(data.joints(i));
       };
-      const PoseAndJacobian<N> at = warm ? visit(now.at_temperature(data.temperatures()(i))) : visit(now);
+      const PoseAndJacobian<N> at =
+          loaded
+              ? visit(
+                    (warm ? now.at_temperature(data.temperatures()(i)) : now).carrying(Payload::of(data.payloads(), i)))
+          : warm ? visit(now.at_temperature(data.temperatures()(i)))
+                 : visit(now);
       poses[static_cast<std::size_t>(i)] = at.pose;
       std::copy_n(at.jacobian.data(), 6 * N, jacobians.data() + 6 * N * i);
     }

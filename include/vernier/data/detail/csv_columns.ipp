@@ -13,7 +13,7 @@ struct ColumnStem {
   std::string_view stem;
   const Quantity& quantity;
 };
-inline constexpr std::array<ColumnStem, 17> column_stems{{{"sx", quantities::standard_length},
+inline constexpr std::array<ColumnStem, 21> column_stems{{{"sx", quantities::standard_length},
                                                           {"sy", quantities::standard_length},
                                                           {"sz", quantities::standard_length},
                                                           {"srx", quantities::standard_angle},
@@ -29,7 +29,11 @@ inline constexpr std::array<ColumnStem, 17> column_stems{{{"sx", quantities::sta
                                                           {"radius", quantities::gauge_length},
                                                           {"offset", quantities::gauge_length},
                                                           {"time", quantities::time_of_measuring},
-                                                          {"temperature", quantities::temperature}}};
+                                                          {"temperature", quantities::temperature},
+                                                          {"payload_x", quantities::gauge_length},
+                                                          {"payload_y", quantities::gauge_length},
+                                                          {"payload_z", quantities::gauge_length},
+                                                          {"payload", quantities::payload}}};
 
 /// Names without unit that a reader knows.
 inline constexpr std::array<std::string_view, 7> read_names{"segment",   "move",       "pose", "cycle",

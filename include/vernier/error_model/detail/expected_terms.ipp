@@ -59,7 +59,7 @@ VERNIER_IMPL VectorX expected_sizes(const JointTerms& terms, const ErrorModelOpt
       const auto joint = static_cast<std::size_t>(block.joint);
       out(block.begin + k) = block.kind == JointTermBlock::Kind::transmission
                                  ? expected_std(spectra[joint], terms.transmission[joint].order(k))
-                                 : options.expected_size(block.kind);
+                                 : options.expected_size(terms, block, k);
     }
   return out;
 }

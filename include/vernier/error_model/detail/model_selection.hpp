@@ -79,7 +79,7 @@ class ModelSelection {
   /// where there are poses enough, or where evidence speaks clearly against the expected spectrum.
   VERNIER_API void learn_spectrum(int iterations);
 
-  /// Unknowns of gravity compliance.
+  /// Unknowns of gravity compliance, and of that to payload.
   VERNIER_API UnknownGroup gravity() const;
   /// Unknowns of the transmissions, of orders first .. last.
   VERNIER_API UnknownGroup harmonics(int first, int last) const;

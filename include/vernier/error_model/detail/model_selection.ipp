@@ -98,17 +98,19 @@ VERNIER_IMPL void ModelSelection::extend_terms(const JointTerms& terms) {
 
 VERNIER_IMPL bool ModelSelection::add(Block block, const JointTerms& terms) {
   const ArmParameterisation before = problem.arm;
-  Index first = terms.size(), count = 0;  // of the additional coefficients, which are contiguous
+  std::vector<JointTermBlock> additional;
   for (const JointTermBlock& now : terms.blocks()) {
     bool known = false;
     for (const JointTermBlock& old : before.terms().blocks())
       known = known || (old.kind == now.kind && old.joint == now.joint);
     if (known) continue;
-    first = (std::min)(first, now.begin);
-    count += now.count;
+    additional.push_back(now);
   }
   extend_terms(terms);
-  if (choose_by_evidence(block, unknowns(first, count))) return true;
+  UnknownGroup group;
+  for (const JointTermBlock& now : additional)
+    for (const Index k : unknowns(now.begin, now.count)) group.push_back(k);
+  if (choose_by_evidence(block, group)) return true;
   problem.arm = before;
   changed();
   return false;
@@ -134,9 +136,12 @@ VERNIER_IMPL UnknownGroup ModelSelection::harmonics(int first, int last) const {
 }
 
 VERNIER_IMPL UnknownGroup ModelSelection::gravity() const {
+  UnknownGroup out;
+  using Kind = JointTermBlock::Kind;
   for (const JointTermBlock& block : problem.arm.terms().blocks())
-    if (block.kind == JointTermBlock::Kind::gravity) return unknowns(block.begin, block.count);
-  return {};
+    if (block.kind == Kind::gravity || block.kind == Kind::payload)
+      for (const Index k : unknowns(block.begin, block.count)) out.push_back(k);
+  return out;
 }
 
 VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest score, const VectorX& with,

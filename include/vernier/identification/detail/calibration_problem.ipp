@@ -278,12 +278,13 @@ VERNIER_IMPL void CalibrationProblem::operator()(Index first, Index count, RowBl
     VectorX warmer;
     if (set.temperatures.size() > 0) warmer.resize(stretch);
     for (Index i = 0; i < warmer.size(); ++i) warmer(i) = set.temperatures(begin.row + i) - reference_temperature;
-    const bool visited = set.previous.rows() > 0, paired = set.seen_from.rows() > 0;
+    const bool visited = set.previous.rows() > 0, paired = set.seen_from.rows() > 0, loaded = set.payloads.rows() > 0;
     const auto linearise = [&](const MatrixX& joints, bool with_previous, RowBlock* rows) {
       return arm.linearise(
           begin.station, VERNIER_LATER(joints).middleRows(begin.row, stretch),
           VERNIER_LATER(set.previous).middleRows(with_previous ? begin.row : 0, with_previous ? stretch : 0), rows,
-          joint_columns || joint_sigma_ > 0, warmer);
+          joint_columns || joint_sigma_ > 0, warmer,
+          VERNIER_LATER(set.payloads).middleRows(loaded ? begin.row : 0, loaded ? stretch : 0));
     };
     std::vector<Isometry3> poses = linearise(set.joints, visited, out + done), from;
     if (paired) {

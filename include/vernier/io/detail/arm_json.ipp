@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/io/detail/arm_json.hpp"
 
 namespace vernier::detail {
@@ -81,6 +82,49 @@ VERNIER_IMPL CoverageData coverage_from_json(const JsonNode& node, int joints) {
   return out;
 }
 
+/// A block of joint errors, with the keys of its row.
+VERNIER_LOCAL OrderedJson block_to_json(const JointErrors& errors, const JointTermBlock& block) {
+  const JointTermTraits& row = traits_of(block.kind);
+  OrderedJson coefficients = list_of(errors.coefficients().segment(block.begin, block.count));
+  if (!row.has_parameters()) return coefficients;
+  const std::vector<double> values = errors.terms().parameters(block.kind);
+  OrderedJson out;
+  std::size_t at = 0;
+  for (const JointTermTraits::Parameter& parameter : row.parameters) {
+    if (parameter.key == nullptr) break;
+    const std::size_t end = parameter.count > 0 ? at + static_cast<std::size_t>(parameter.count) : values.size();
+    if (parameter.count == 1)
+      out[parameter.key] = values[at];
+    else
+      out[parameter.key] = std::vector<double>(values.begin() + static_cast<std::ptrdiff_t>(at),
+                                               values.begin() + static_cast<std::ptrdiff_t>(end));
+    at = end;
+  }
+  out[row.coefficients] = std::move(coefficients);
+  const PayloadLoad& load = errors.load();
+  if (block.kind == JointTermBlock::Kind::payload && (!same_value(load.weight, 0) || load.moment.norm() > 0)) {
+    out["weight_n"] = load.weight;  // beyond the reference
+    out["moment_nm"] = list_of(load.moment);
+  }
+  return out;
+}
+
+/// The parameters of a block by the keys of its row.
+VERNIER_LOCAL std::vector<double> parameters_from_json(const JointTermTraits& row, const JsonNode& block) {
+  std::vector<double> out;
+  for (const JointTermTraits::Parameter& parameter : row.parameters) {
+    if (parameter.key == nullptr) break;
+    const JsonNode node = block.at(parameter.key);
+    if (parameter.count == 1) {
+      out.push_back(node.number());
+      continue;
+    }
+    if (parameter.count > 0) node.require_size(static_cast<std::size_t>(parameter.count));
+    for (std::size_t k = 0; k < node.size(); ++k) out.push_back(node.at(k).number());
+  }
+  return out;
+}
+
 VERNIER_LOCAL OrderedJson joint_errors_to_json(const JointErrors& errors) {
   const JointTerms& terms = errors.terms();
   OrderedJson out{{"coefficients", terms.size()}};  // so that a block that got lost is missed
@@ -89,14 +133,12 @@ VERNIER_LOCAL OrderedJson joint_errors_to_json(const JointErrors& errors) {
   for (const Fourier& fourier : terms.transmission)
     joints.push_back({{"orders", fourier.orders}, {"coefficients_rad", OrderedJson::array()}});
   for (const JointTermBlock& block : terms.blocks()) {
-    OrderedJson values = list_of(errors.coefficients().segment(block.begin, block.count));
     const JointTermTraits& row = traits_of(block.kind);
     if (block.joint >= 0)
-      joints[static_cast<std::size_t>(block.joint)][row.coefficients] = std::move(values);
-    else if (row.parameters != nullptr)
-      out[row.key] = {{row.parameters, terms.parameters(block.kind)}, {row.coefficients, std::move(values)}};
+      joints[static_cast<std::size_t>(block.joint)][row.coefficients] =
+          list_of(errors.coefficients().segment(block.begin, block.count));
     else
-      out[row.key] = std::move(values);
+      out[row.key] = block_to_json(errors, block);
   }
   if (transmissions) out["transmission"] = std::move(joints);
   if (!terms.linear_ranges.empty()) {
@@ -119,19 +161,18 @@ VERNIER_LOCAL JointErrors joint_errors_from_json(const ChainTable& nominal, cons
     if (row.kind == JointTermBlock::Kind::transmission || !node.has(row.key)) continue;
     const JsonNode block = node.at(row.key);
     const Index before = terms.size();
-    std::vector<double> parameters;
-    if (row.parameters != nullptr) {
-      const JsonNode list = block.at(row.parameters);
-      for (std::size_t k = 0; k < list.size(); ++k) parameters.push_back(list.at(k).number());
-    }
+    const std::vector<double> parameters = parameters_from_json(row, block);
     try {
       terms.add(row.kind, nominal, parameters);
     } catch (const std::invalid_argument& fault) {
-      block.at(row.parameters).fail(fault.what());
+      block.at(row.parameters[0].key).fail(fault.what());
     }
-    const JsonNode coefficients = row.parameters != nullptr ? block.at(row.coefficients) : block;
+    const JsonNode coefficients = row.has_parameters() ? block.at(row.coefficients) : block;
     blocks.push_back(coefficients.numbers(static_cast<std::size_t>(terms.size() - before)));
   }
+  PayloadLoad load;
+  if (node.has("payload") && node.at("payload").has("weight_n"))
+    load = {node.at("payload").at("weight_n").number(), Vector3(node.at("payload").at("moment_nm").numbers(3))};
   if (node.has("linear_ranges")) {
     node.at("linear_ranges").require_size(joints);
     for (std::size_t i = 0; i < joints; ++i) {
@@ -168,7 +209,7 @@ VERNIER_LOCAL JointErrors joint_errors_from_json(const ChainTable& nominal, cons
     coefficients.segment(at, block.size()) = block;
     at += block.size();
   }
-  return {std::move(terms), std::move(coefficients)};
+  return JointErrors(std::move(terms), std::move(coefficients)).under(load);
 }
 
 VERNIER_IMPL OrderedJson arm_to_json(const FittedArm& arm) {

@@ -102,7 +102,11 @@ VERNIER_IMPL std::string c_arm_tables(const std::string& type, const std::string
     const std::vector<double> values(first, first + block.count);
     if (block.joint < 0) {
       const std::string key = traits_of(block.kind).key;
-      const std::vector<double> parameters = terms.parameters(block.kind);
+      std::vector<double> parameters = terms.parameters(block.kind);
+      if (block.kind == JointTermBlock::Kind::payload) {
+        const PayloadLoad& load = arm.errors.load();
+        parameters.insert(parameters.end(), {load.weight, load.moment(0), load.moment(1), load.moment(2)});
+      }
       const std::string coefficients = table((key + "_").c_str(), values, n);
       of_kinds[static_cast<std::size_t>(block.kind)] = message(
           "{", coefficients, ", ", table((key + "_parameters_").c_str(), parameters, 3), ", ", parameters.size(), "}");

@@ -7,6 +7,7 @@
 #include "vernier/error_model/error_model_options.hpp"
 #include "vernier/identification/options.hpp"
 #include "vernier/measurements/sensor_model.hpp"
+#include "vernier/planning/detail/candidate_rows.hpp"
 
 namespace vernier::detail {
 
@@ -24,6 +25,10 @@ struct PlannedCalibration {
 /// six. Frames are all but free.
 /// @param joints   n x joints [rad, m]
 /// @param previous from which they are approached, likewise; no rows, or not finite, where unknown
+VERNIER_API CandidateRows expected_candidate_rows(const PlannedCalibration& planned, const ConstMatrixRef& joints,
+                                                  const ConstMatrixRef& previous);
+
+/// Those rows as one matrix, a column an unknown.
 VERNIER_API MatrixX expected_rows(const PlannedCalibration& planned, const ConstMatrixRef& joints,
                                   const ConstMatrixRef& previous);
 

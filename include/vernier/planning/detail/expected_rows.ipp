@@ -7,13 +7,14 @@
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/identification_plan.hpp"
+#include "vernier/least_squares/detail/visit_blocks.hpp"
 #include "vernier/measurements/pose_sensor.hpp"
 #include "vernier/planning/detail/expected_rows.hpp"
 
 namespace vernier::detail {
 
-VERNIER_IMPL MatrixX expected_rows(const PlannedCalibration& planned, const ConstMatrixRef& joints,
-                                   const ConstMatrixRef& previous) {
+VERNIER_IMPL CandidateRows expected_candidate_rows(const PlannedCalibration& planned, const ConstMatrixRef& joints,
+                                                   const ConstMatrixRef& previous) {
   const ArmGeometry& nominal = planned.nominal;
   const IdentificationPlan parameters(nominal, planned.geometry);
   std::vector<GeometricUnknown> unknowns;
@@ -35,10 +36,29 @@ VERNIER_IMPL MatrixX expected_rows(const PlannedCalibration& planned, const Cons
                              {planned.sensors.position_sigma, planned.sensors.orientation_sigma}));
   set.previous = previous;
   const CalibrationProblem problem(std::move(arm), {std::move(set)}, Loss::squared, planned.sensors.joint_sigma);
-  MatrixX out = problem.stacked(true).jacobian;
   const VectorX precisions = problem.arm.precisions();
-  for (Index k = 0; k < out.cols(); ++k) VERNIER_LATER(out).col(k) /= std::sqrt(precisions(k));
+  const Index few = problem.arm.num_dense(), n = joints.rows();
+  CandidateRows out{planned.oriented ? 6 : 3, {}, {}, {}, problem.arm.group_sizes()};
+  out.dense.resize(few, n * out.block);
+  out.functions.resize(precisions.size() - few, n);
+  out.factors.resize(static_cast<Index>(out.groups.size()), n * out.block);
+  visit_blocks(problem.system(), 0, 1, n, [&](Index c, const RowBlock& rows) {
+    for (Index r = 0; r < out.block; ++r) {
+      const Index column = c * out.block + r;
+      for (Index k = 0; k < few; ++k) out.dense(k, column) = rows.dense(r, k) / std::sqrt(precisions(k));
+      for (Index j = 0; j < out.factors.rows(); ++j)
+        out.factors(j, column) = j < rows.factor.cols() ? rows.factor(r, j) : 0;
+    }
+    for (Index k = 0; k < out.functions.rows(); ++k)
+      out.functions(k, c) = rows.functions(k) / std::sqrt(precisions(few + k));
+  });
   return out;
+}
+
+VERNIER_IMPL MatrixX expected_rows(const PlannedCalibration& planned, const ConstMatrixRef& joints,
+                                   const ConstMatrixRef& previous) {
+  const CandidateRows rows = expected_candidate_rows(planned, joints, previous);
+  return VERNIER_LATER(rows.columns(0, rows.size())).transpose();
 }
 
 }  // namespace vernier::detail

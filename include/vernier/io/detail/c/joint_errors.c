@@ -74,6 +74,53 @@ static inline void arm_add_gravity_(const arm_arm_ *arm, const arm_links_ *links
   }
 }
 #endif
+#if HAS_PAYLOAD
+
+/* Torques of what is carried at the end of the nominal chain. Parameters: the direction of gravity, mass and centre of
+ * the payload while measuring; then weight [N] and moment in the frame of the flange [N m] beyond that. */
+static inline void arm_add_payload_(const arm_arm_ *arm, const arm_links_ *links, const double *end, double *joints,
+                                  double *rate) {
+  const double *down = arm->terms[ARM_PAYLOAD_].parameters, *load = down + 7;
+  const double weight = load[0];
+  double moment[3];
+  int i, j, k;
+  arm_rotate_(end, load + 1, moment);
+  for (j = 0; j < 3; ++j) moment[j] += weight * end[9 + j];
+  for (i = 0; i < ARM_CHAIN_; ++i) {
+    const double c = arm->terms[ARM_PAYLOAD_].of[i], *axis = links->axis + 3 * i;
+    double lever[3], about[3], turned[3];
+    for (j = 0; j < 3; ++j) lever[j] = moment[j] - weight * links->point[3 * i + j];
+#if HAS_PRISMATIC
+    if (arm_prismatic_[i]) {
+      joints[i] += c * weight * arm_dot_(axis, down);
+      for (k = 0; rate && k < i; ++k) {
+        if (arm_prismatic_[k]) continue;
+        arm_cross_(links->axis + 3 * k, axis, turned);
+        rate[k * ARM_CHAIN_ + i] += c * weight * arm_dot_(turned, down);
+      }
+      continue;
+    }
+#endif
+    joints[i] += c * arm_triple_(axis, lever, down);
+    for (k = 0; rate && k < ARM_CHAIN_; ++k) {
+      const double *turn = links->axis + 3 * k;
+      double *slope = rate + k * ARM_CHAIN_ + i;
+#if HAS_PRISMATIC
+      if (arm_prismatic_[k]) {
+        if (k > i) *slope += c * weight * arm_triple_(axis, turn, down);
+        continue;
+      }
+#endif
+      for (j = 0; j < 3; ++j) about[j] = moment[j] - weight * links->point[3 * (k < i ? i : k) + j];
+      arm_cross_(turn, about, turned);
+      *slope += c * arm_triple_(axis, turned, down);
+      if (k >= i) continue;
+      arm_cross_(turn, axis, turned);
+      *slope += c * arm_triple_(turned, lever, down);
+    }
+  }
+}
+#endif
 #if HAS_HYSTERESIS
 
 /* Hysteresis: of each width a coefficient a joint. */
@@ -147,16 +194,96 @@ static inline void arm_add_harmonics_(const arm_arm_ *arm, const double *q, doub
   }
 }
 #endif
-#if HAS_TILT
+#if HAS_STRAIGHTNESS
 
-/* Tilts of the joints' frames under gravity: a motion of the arm's end in the base frame of the chain. Of each joint
- * about x by the three components of gravity, then about y. */
-static inline void arm_add_tilt_(const arm_arm_ *arm, const arm_links_ *links, double *end, double *J) {
-  const double *down = arm->terms[ARM_TILT_].parameters;
-  double shift[3] = {0, 0, 0}, turn[3] = {0, 0, 0}, rates[6 * ARM_CHAIN_], R[9], left[9], rotated[9], v[3], w[3];
-  int i, j, k;
+/* Adds how prismatic joints depart from a straight motion: of each, cosines of x, y, z and of the rotations about them.
+ * Parameters: the number of cosines, then the range of each. */
+static inline void arm_add_guides_(const arm_arm_ *arm, const arm_links_ *links, const double *q, double *shift,
+                                 double *turn, double *rates) {
+  const arm_terms_ *terms = arm->terms + ARM_STRAIGHTNESS_;
+  const double *c = terms->of, *range = terms->parameters + 1;
+  const int orders = (int)terms->parameters[0];
+  int i, j, k, m;
   for (i = 0; i < ARM_CHAIN_; ++i) {
-    const double *c = arm->terms[ARM_TILT_].of + 6 * i, *x = links->x + 3 * i, *y = links->y + 3 * i, *origin = links->origin + 3 * i;
+    const double *axes[3], *origin = links->origin + 3 * i;
+    double z[3], value[6], slope[6], moved[3] = {0, 0, 0}, turned[3] = {0, 0, 0}, moving[3] = {0, 0, 0};
+    double turning[3] = {0, 0, 0}, swung[3], v[3], w[3], rate, angle;
+    if (!arm_prismatic_[i]) continue;
+    arm_cross_(links->x + 3 * i, links->y + 3 * i, z);
+    axes[0] = links->x + 3 * i;
+    axes[1] = links->y + 3 * i;
+    axes[2] = z;
+    rate = 3.14159265358979323846 / (range[1] - range[0]);
+    angle = rate * (q[i] - range[0]);
+    if (q[i] <= range[0]) angle = rate = 0;
+    if (q[i] >= range[1]) {
+      angle = 3.14159265358979323846;
+      rate = 0;
+    }
+    range += 2;
+    for (m = 0; m < 6; ++m) {
+      value[m] = slope[m] = 0;
+      for (k = 1; k <= orders; ++k, ++c) {
+        value[m] += *c * cos(k * angle);
+        slope[m] -= *c * k * rate * sin(k * angle);
+      }
+    }
+    for (m = 0; m < 3; ++m)
+      for (j = 0; j < 3; ++j) {
+        moved[j] += value[m] * axes[m][j];
+        turned[j] += value[3 + m] * axes[m][j];
+        moving[j] += slope[m] * axes[m][j];
+        turning[j] += slope[3 + m] * axes[m][j];
+      }
+    arm_cross_(origin, turned, v);
+    for (j = 0; j < 3; ++j) {
+      shift[j] += moved[j] + v[j];
+      turn[j] += turned[j];
+    }
+    if (!rates) continue;
+    arm_cross_(links->axis + 3 * i, turned, v);
+    arm_cross_(origin, turning, w);
+    for (j = 0; j < 3; ++j) {
+      rates[6 * i + j] += v[j] + moving[j] + w[j];
+      rates[6 * i + 3 + j] += turning[j];
+    }
+    for (k = 0; k < i; ++k) {
+      const double *axis = links->axis + 3 * k;
+      double lever[3];
+      arm_cross_(axis, turned, v);
+      if (arm_prismatic_[k]) {
+        for (j = 0; j < 3; ++j) rates[6 * k + j] += v[j];
+        continue;
+      }
+      for (j = 0; j < 3; ++j) {
+        lever[j] = origin[j] - links->point[3 * k + j];
+        rates[6 * k + 3 + j] += v[j];
+      }
+      arm_cross_(origin, v, w);
+      arm_cross_(axis, moved, swung);
+      arm_cross_(axis, lever, v);
+      arm_cross_(v, turned, v);
+      for (j = 0; j < 3; ++j) rates[6 * k + j] += swung[j] + v[j] + w[j];
+    }
+  }
+}
+#endif
+#if HAS_MOTION
+
+/* Tilts of the joints' frames under gravity, and guides: a motion of the arm's end in the base frame of the chain. */
+static inline void arm_add_motion_(const arm_arm_ *arm, const arm_links_ *links, const double *q, double *end, double *J) {
+  double shift[3] = {0, 0, 0}, turn[3] = {0, 0, 0}, rates[6 * ARM_CHAIN_], R[9], left[9], rotated[9], v[3], w[3];
+  int j, k;
+#if HAS_TILT
+  const double *down = arm->terms[ARM_TILT_].parameters;
+  int i;
+#endif
+  (void)q;
+  for (k = 0; k < 6 * ARM_CHAIN_; ++k) rates[k] = 0;
+#if HAS_TILT
+  for (i = 0; arm->terms[ARM_TILT_].of && i < ARM_CHAIN_; ++i) {
+    const double *c = arm->terms[ARM_TILT_].of + 6 * i, *x = links->x + 3 * i, *y = links->y + 3 * i;
+    const double *origin = links->origin + 3 * i;
     double z[3], tilted[3];
     arm_cross_(x, y, z);
     for (k = -1; k <= (J ? i : -1); ++k) { /* -1: the motion itself, else its change by joint k */
@@ -184,24 +311,25 @@ static inline void arm_add_tilt_(const arm_arm_ *arm, const arm_links_ *links, d
       arm_cross_(links->axis + 3 * k, tilted, w);
 #if HAS_PRISMATIC
       if (arm_prismatic_[k]) {
-        for (j = 0; j < 3; ++j) {
-          rates[6 * k + j] = (k == i ? 0 : rates[6 * k + j]) + w[j];
-          rates[6 * k + 3 + j] = k == i ? 0 : rates[6 * k + 3 + j];
-        }
+        for (j = 0; j < 3; ++j) rates[6 * k + j] += w[j];
         continue;
       }
 #endif
       for (j = 0; j < 3; ++j) {
         v[j] += w[j];
-        rates[6 * k + 3 + j] = (k == i ? 0 : rates[6 * k + 3 + j]) + v[j];
+        rates[6 * k + 3 + j] += v[j];
         lever[j] = origin[j] - links->point[3 * k + j];
       }
       arm_cross_(origin, v, w);
       arm_cross_(links->axis + 3 * k, lever, v);
       arm_cross_(v, tilted, v);
-      for (j = 0; j < 3; ++j) rates[6 * k + j] = (k == i ? 0 : rates[6 * k + j]) + w[j] + v[j];
+      for (j = 0; j < 3; ++j) rates[6 * k + j] += w[j] + v[j];
     }
   }
+#endif
+#if HAS_STRAIGHTNESS
+  if (arm->terms[ARM_STRAIGHTNESS_].of) arm_add_guides_(arm, links, q, shift, turn, J ? rates : 0);
+#endif
   arm_exp_(turn, R);
   arm_product_(R, end, rotated);
   for (k = 0; k < 9; ++k) end[k] = rotated[k];
@@ -248,6 +376,9 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
 #if HAS_GRAVITY
   if (arm->terms[ARM_GRAVITY_].of) arm_add_gravity_(arm, &nominal, joints, J ? rate : 0);
 #endif
+#if HAS_PAYLOAD
+  if (arm->terms[ARM_PAYLOAD_].of) arm_add_payload_(arm, &nominal, end, joints, J ? rate : 0);
+#endif
 #if HAS_HYSTERESIS
   arm_add_hysteresis_(arm, q, previous, joints, J ? rate : 0);
 #endif
@@ -283,8 +414,8 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
         J[6 * k + j] = sum;
       }
   }
-#if HAS_TILT
-  if (arm->terms[ARM_TILT_].of) arm_add_tilt_(arm, &nominal, end, J);
+#if HAS_MOTION
+  if (arm->terms[ARM_TILT_].of || arm->terms[ARM_STRAIGHTNESS_].of) arm_add_motion_(arm, &nominal, q, end, J);
 #endif
   if (J) { /* from the flange to the tool point, from the chain's base to the base */
     double lever[3], moved[3];

@@ -24,6 +24,7 @@ struct ErrorModelOptions {
   bool find_lines = true;                ///< search for further orders up to 2,500, from 400 measurements on
   bool tool_per_station = false;         ///< every station has its own tool frame, not only its own base frame
   Vector3 down{0, 0, -1};                ///< direction of gravity in the arm's base frame
+  bool estimate_down = false;            ///< whether that is only where a search for it starts, if compliance is found
   double compliance_prior_std = 1e-3;    ///< expected product of compliance and weight [rad/m]
   double payload_prior_std = 3e-5;       ///< expected compliance of a joint to payload [rad/(N m), m/N]
   double gear_ratio_prior_std = 1e-4;    ///< expected relative error of a gear ratio

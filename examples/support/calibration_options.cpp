@@ -138,6 +138,8 @@ void add_estimation(Program& program, CalibrationOptions& o, TypedValues& typed)
   program.add_flag("--no-approach", o.no_approach,
                    "rows are not in the order of measuring: no hysteresis by the direction of approach");
   program.add_flag("--no-tilt", typed.no_tilt, "no tilts of the joints' frames under gravity");
+  program.add_flag("--estimate-down", o.calibrate.errors.estimate_down,
+                   "estimate the direction of gravity too, from --down on, if compliance is found");
   program.add_flag("--no-temperature", typed.no_temperature, "no change of the geometry with temperature");
   program.add_flag("--no-drift", typed.no_drift, "no drift of base and joints during the session");
   program

@@ -113,6 +113,16 @@ TEST(ReadingsJoined, AMotionInBetweenMakesAnotherVisit) {
   EXPECT_DOUBLE_EQ(joined.position(1).x(), 2.5);
 }
 
+TEST(ReadingsJoined, AnotherPayloadMakesAnotherVisit) {
+  MatrixX payloads = MatrixX::Constant(4, 4, std::numeric_limits<double>::quiet_NaN());
+  payloads.col(0) << 0, 0, 5, 5;
+  const Dataset<1> joined = readings_joined(readings({0.1, 0.1, 0.1, 0.1}).carrying(payloads));
+  ASSERT_EQ(joined.size(), 2);
+  EXPECT_DOUBLE_EQ(joined.position(0).x(), 0.5);
+  EXPECT_DOUBLE_EQ(joined.position(1).x(), 2.5);
+  EXPECT_EQ(joined.payloads().col(0), Eigen::Vector2d(0, 5));
+}
+
 TEST(ReadingsJoined, RowsOfDifferentPosesStayAsTheyAre) {
   const Dataset<1> data = readings({0.1, 0.2, 0.1, 0.2});
   EXPECT_EQ(readings_joined(data).positions(), data.positions());

@@ -60,6 +60,9 @@ JointErrors joint_errors(const DhChain<N, Convention>& chain, bool few) {
     terms.linear_ranges = std::vector<JointRange>(N, {-0.8, 0.6});
     terms.tilt.emplace(chain, Vector3(0.6, 0, -0.8));
     terms.payload.emplace(detail::ChainTable(chain.view()), Vector3(0, 0.6, -0.8), Payload{1, Vector3(0.1, 0, 0.2)});
+    std::vector<JointRange> ranges(N, {-0.6, 0.8});  // shorter than those of the joints
+    terms.straightness.emplace(detail::ChainTable(chain.view()), ranges, 4);
+    if (terms.straightness->size() == 0) terms.straightness.reset();
     for (int i = 0; i < N; ++i) {
       Fourier& fourier = terms.transmission[static_cast<std::size_t>(i)];
       if (i == 1) continue;  // a joint without

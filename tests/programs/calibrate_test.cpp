@@ -85,6 +85,7 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
                                                     "stages",
                                                     "chosen",
                                                     "mean_temperature_c",
+                                                    "down",
                                                     "payload",
                                                     "blocks",
                                                     "learners",

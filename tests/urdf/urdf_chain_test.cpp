@@ -91,6 +91,25 @@ const std::string mixed_urdf =
     "<joint name='hand' type='fixed'><parent link='g'/><child link='h'/><origin xyz='0.05 0.06 0.07' rpy='1 2 "
     "3'/><mimic joint='turn'/></joint></robot>";
 
+// A joint of a parallelogram follows two joints before it: the chain has it, the controller does not.
+TEST(UrdfChain, AJointThatMimicsIsPassive) {
+  std::string text = mixed_urdf;
+  const std::string plain = "0'/><axis xyz='0 -1 0'/>";
+  ASSERT_NE(text.find(plain), std::string::npos);
+  text.replace(text.find(plain), plain.size(),
+               "0'/><axis xyz='0 -1 0'/><mimic joint='turn' multiplier='-2' offset='0.25'/>");
+  const UrdfChain chain = parse_urdf(text, "mixed.urdf"), all = parse_urdf(mixed_urdf, "mixed.urdf");
+  const ControllerMap& controller = chain.robot.controller;
+  ASSERT_EQ(chain.robot.dof(), 4);
+  ASSERT_EQ(chain.robot.controller_joints(), 3);
+  EXPECT_EQ(chain.robot.limits.size(), 3u);
+  EXPECT_TRUE(all.robot.controller.same());
+  const MatrixX shown{{0.3, -0.7, 0.1}};
+  EXPECT_EQ(controller.to_chain(shown), (MatrixX{{0.3, -0.7, 0.1, -0.35}}));
+  EXPECT_EQ(controller.to_controller(controller.to_chain(shown)), shown);
+  EXPECT_TRUE(chain.robot.geometry().parameters() == all.robot.geometry().parameters());
+}
+
 TEST(UrdfChain, PosesAreProductsOfOriginsAndJointMotions) {
   const UrdfChain chain = parse_urdf(mixed_urdf, "mixed.urdf");
   const ArmGeometry arm = chain.robot.geometry();
@@ -223,7 +242,12 @@ TEST(UrdfChain, DamageIsNamedInOneLine) {
   expect(with("type=\"revolute\"", "type=\"ball\""), "type 'ball' is unknown");
   expect(with("type=\"revolute\"", "type=\"floating\""), "joint 'joint_a1' of the chain is floating");
   expect(with("type=\"revolute\"", "type=\"planar\""), "joint 'joint_a1' of the chain is planar");
-  expect(with("<axis", "<mimic joint=\"joint_a2\"/><axis"), "joint 'joint_a1' of the chain mimics another joint");
+  expect(with("<axis", "<mimic joint=\"joint_a9\"/><axis"),
+         "joint 'joint_a1' mimics 'joint_a9', which is no joint of the chain that moves by itself");
+  expect(with("<axis", "<mimic joint=\"joint_a2\" multiplier=\"0.5\"/><axis"),
+         "joint 'joint_a1' mimics 'joint_a2', by a multiplier of 0.5; it must be a whole number");
+  expect(with("<axis", "<mimic joint=\"joint_a2\" multiplier=\"0\"/><axis"), "by a multiplier of 0;");
+  expect(with("<axis", "<mimic/><axis"), "the mimic of joint 'joint_a1' has no joint");
   expect(with("<parent link=\"link_0\"/>", ""), "joint 'joint_a1' has no parent");
   expect(with("<child link=\"link_1\"/>", "<child/>"), "the child of joint 'joint_a1' has no link");
   expect(with("<parent link=\"link_0\"/>", "<parent link=\"link_0\"/><parent link=\"link_0\"/>"),

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "vernier/calibration/detail/state_of_row.hpp"
 #include "vernier/calibration/fitted_set.hpp"
 #include "vernier/calibration/outlying_row.hpp"
 #include "vernier/calibration/stage_errors.hpp"
@@ -109,22 +110,6 @@ struct Calibration {
 };
 
 namespace detail {
-
-/// Whether a model depends on what the arm carries, and the data state that.
-template <class Chain>
-bool loaded_by(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data) {
-  return data.payloads().rows() > 0 && model.identified().model().joint_errors().terms().payload.has_value();
-}
-
-/// The model at the temperature of a row and under its payload; unchanged by what is unknown.
-/// @param temperature whether it is to be at that temperature
-template <class Chain>
-ErrorModel<Chain> in_state_of(const ErrorModel<Chain>& model, const Dataset<Chain::dof>& data, Index row,
-                              bool temperature = true) {
-  ErrorModel<Chain> out =
-      temperature && data.temperatures().size() > 0 ? model.at_temperature(data.temperatures()(row)) : model;
-  return loaded_by(model, data) ? out.carrying(Payload::of(data.payloads(), row)) : out;
-}
 
 /// Poses as predicted under the payloads of the data, else as the model is.
 template <class Chain>

@@ -49,6 +49,12 @@ struct FittedPayload {
   bool estimated = false;  ///< whether there were several payloads, so that the effect of another one is known
 };
 
+/// A direction of gravity that was estimated.
+struct EstimatedDown {
+  Vector3 direction;  ///< in the base frame of the chain
+  double std = 0;     ///< standard deviation [rad]
+};
+
 /// A calibration, assessed.
 struct CalibrationReport {
   IdentificationReport identification;       ///< of the geometry
@@ -63,6 +69,7 @@ struct CalibrationReport {
   StageName chosen{};                        ///< the stage that is deployed
   std::optional<double> mean_temperature{};  ///< of the training poses [deg C], where the model changes with it
   std::optional<FittedPayload> payload{};    ///< where the poses state what the arm carried, and that has an effect
+  std::optional<EstimatedDown> down{};       ///< where the direction of gravity was estimated
   std::optional<PriorTransfer> prior{};      ///< how much of an earlier calibration holds, where there was one
   std::vector<SessionDrift> drift{};         ///< of each station's base; empty where the data do not support it
   double max_degradation = 0;     ///< largest excess of the chosen stage's error over that of geometry, inside the

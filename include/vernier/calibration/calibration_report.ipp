@@ -389,6 +389,10 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::details() const {
   if (mean_temperature)
     out.push_back(message("Where no temperature is given, the model is that of ", detail::brief(*mean_temperature),
                           " deg C, the mean of the measurements."));
+  if (down)
+    out.push_back(message("Gravity was found along ", detail::brief(down->direction(0)), ", ",
+                          detail::brief(down->direction(1)), ", ", detail::brief(down->direction(2)),
+                          " of the arm's base frame, to ", detail::brief(down->std * 1e3), " mrad."));
   if (payload)
     out.push_back(payload->estimated
                       ? message("Where no payload is given, the model is that of ", detail::brief(payload->mean),

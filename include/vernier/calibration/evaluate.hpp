@@ -136,6 +136,8 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
     for (const StagedModels<Chain>& staged : errors.stages)
       if (staged.stage < Stage::temperature) out.chosen = staged.stage;
   if (errors.model().thermal() != nullptr) out.mean_temperature = errors.mean_temperature;
+  if (const auto& gravity = errors.arm.terms().gravity; gravity && errors.down_std > 0)
+    out.down = EstimatedDown{gravity->down(), errors.down_std};
   if (const JointErrors& last = errors.model().identified().model().joint_errors(); last.terms().payload)
     out.payload = FittedPayload{last.terms().payload->reference().mass, detail::payload_matters(last)};
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/calibration/detail/state_of_row.hpp"
 #include "vernier/core/rigid_motions.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/error_model/error_model_estimate.hpp"

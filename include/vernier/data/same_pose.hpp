@@ -34,8 +34,10 @@ namespace detail {
 /// Rows of each visit: those that follow one another at one pose, without a stated motion between them.
 /// @param joints   n x joints
 /// @param previous from where each was approached, n x joints; not finite where unknown
+/// @param payloads n x 4, see `Dataset::payloads`: readings are under one payload; no rows where that is unknown
 VERNIER_API std::vector<std::vector<Index>> readings_of_visits(const ConstMatrixRef& joints,
-                                                               const ConstMatrixRef& previous, const SamePose& same);
+                                                               const ConstMatrixRef& previous, const SamePose& same,
+                                                               const ConstMatrixRef& payloads = MatrixX());
 
 /// The first row of each pose.
 VERNIER_API std::vector<Index> first_rows(const std::vector<Index>& poses);
@@ -49,11 +51,11 @@ VERNIER_API Vector3 mean_rotation(const PointRows& orientations, const std::vect
 }  // namespace detail
 
 /// Measurements with the readings of each visit as one row, their mean. Readings are rows that follow one another at
-/// one pose, without a stated motion between them. Joint values, approach and line are those of the first; times and
-/// temperatures are means.
+/// one pose, without a stated motion or change of payload between them. Joint values, payload, approach and line are
+/// those of the first; times and temperatures are means.
 template <int N>
 Dataset<N> readings_joined(const Dataset<N>& data, const SamePose& same = {}) {
-  const auto visits = detail::readings_of_visits(data.joints(), data.previous(), same);
+  const auto visits = detail::readings_of_visits(data.joints(), data.previous(), same, data.payloads());
   if (static_cast<Index>(visits.size()) == data.size()) return data;
   std::vector<Index> first;
   for (const auto& rows : visits) first.push_back(rows.front());
@@ -87,6 +89,7 @@ Dataset<N> readings_joined(const Dataset<N>& data, const SamePose& same = {}) {
       .approached_from(kept.previous())
       .measured_at(times)
       .at_temperatures(temperatures)
+      .carrying(kept.payloads())
       .with_covariances(std::move(covariances))
       .from(kept.origin());
 }

@@ -61,7 +61,8 @@ VERNIER_IMPL std::vector<Index> pose_numbers(const ConstMatrixRef& joints, const
 namespace detail {
 
 VERNIER_IMPL std::vector<std::vector<Index>> readings_of_visits(const ConstMatrixRef& joints,
-                                                                const ConstMatrixRef& previous, const SamePose& same) {
+                                                                const ConstMatrixRef& previous, const SamePose& same,
+                                                                const ConstMatrixRef& payloads) {
   const VectorX tolerances = pose_tolerances(joints.cols(), same);
   std::vector<std::vector<Index>> out;
   for (Index i = 0; i < joints.rows(); ++i) {
@@ -69,6 +70,8 @@ VERNIER_IMPL std::vector<std::vector<Index>> readings_of_visits(const ConstMatri
     if (again &&
         VERNIER_LATER(previous).row(i).allFinite())  // moved in between, unless it stood there or came as before
       again = agree(previous, i, joints, i, tolerances) || agree(previous, i, previous, i - 1, tolerances);
+    for (Index k = 0; again && k < payloads.cols(); ++k)  // where centres are not known they are all the same
+      again = !(std::abs(payloads(i, k) - payloads(i - 1, k)) > 1e-6);
     if (!again) out.emplace_back();
     out.back().push_back(i);
   }

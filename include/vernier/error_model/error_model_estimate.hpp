@@ -73,6 +73,7 @@ struct ErrorModelEstimate {
   double mean_temperature = 0;       ///< of the measurements [deg C], for which the parameters hold; 0 where the model
                                      ///< does not change with temperature
   double temperature_std = 0;        ///< standard deviation of the measured temperatures [K]; likewise
+  double down_std = 0;               ///< standard deviation of the direction of gravity [rad]; 0 where that was given
   double leave_one_out_seconds = 0;  ///< time that leave-one-pose-out errors took
   VectorX left_out_errors{};         ///< of some poses, each predicted by the model without it, drift not known [m]
   std::vector<Index> left_out_rows{};  ///< which poses, counted over the stations

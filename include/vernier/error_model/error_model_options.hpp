@@ -27,6 +27,7 @@ struct ErrorModelOptions {
   bool find_lines = true;                ///< search for further orders up to 2,500, from 400 measurements on
   bool tool_per_station = false;         ///< every station has its own tool frame, not only its own base frame
   Vector3 down{0, 0, -1};                ///< direction of gravity in the arm's base frame
+  bool estimate_down = false;            ///< whether that is only where a search for it starts, if compliance is found
   double compliance_prior_std = 1e-3;    ///< expected product of compliance and weight [rad/m]
   double payload_prior_std = 3e-5;       ///< expected compliance of a joint to payload [rad/(N m), m/N]
   double gear_ratio_prior_std = 1e-4;    ///< expected relative error of a gear ratio
@@ -47,7 +48,7 @@ struct ErrorModelOptions {
 
   /// The parameters of a block that the options allow, for `JointTerms::add`; none where they do not allow it, or where
   /// the parameters follow from the measurements.
-  VERNIER_API std::optional<std::vector<double>> parameters(JointTermBlock::Kind kind) const;
+  VERNIER_API std::optional<std::vector<double>> parameters(JointTermBlock::Kind kind, const Vector3& gravity) const;
   /// Expected size of a coefficient of a block, from 0. Those of a transmission follow the spectrum instead.
   VERNIER_API double expected_size(const JointTerms& terms, const JointTermBlock& block, Index coefficient) const;
   /// @throws std::invalid_argument naming the value

@@ -9,12 +9,13 @@
 
 namespace vernier {
 
-VERNIER_IMPL std::optional<std::vector<double>> ErrorModelOptions::parameters(JointTermBlock::Kind kind) const {
+VERNIER_IMPL std::optional<std::vector<double>> ErrorModelOptions::parameters(JointTermBlock::Kind kind,
+                                                                              const Vector3& gravity) const {
   using Kind = JointTermBlock::Kind;
   const auto if_allowed = [](bool allowed, std::vector<double> values) {
     return allowed ? std::optional(std::move(values)) : std::nullopt;
   };
-  const std::vector<double> direction(down.begin(), down.end());
+  const std::vector<double> direction(gravity.begin(), gravity.end());
   switch (kind) {
     case Kind::gear_ratio: return if_allowed(gear_ratio, {});
     case Kind::coupling: return if_allowed(coupling, {});

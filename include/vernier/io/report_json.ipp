@@ -102,6 +102,11 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
           {"stages", stages_to_json(report.stages)},
           {"chosen", report.chosen.key()},
           {"mean_temperature_c", report.mean_temperature ? Json(*report.mean_temperature) : Json()},
+          {"down",
+           report.down
+               ? Json{{"direction", {report.down->direction(0), report.down->direction(1), report.down->direction(2)}},
+                      {"std_mrad", report.down->std * 1e3}}
+               : Json()},
           {"payload",
            report.payload ? Json{{"mean_kg", report.payload->mean}, {"estimated", report.payload->estimated}} : Json()},
           {"blocks", blocks},

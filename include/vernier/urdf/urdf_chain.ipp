@@ -2,12 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/same_value.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/kinematics/detail/rows_of_axes.hpp"
@@ -71,7 +73,45 @@ VERNIER_LOCAL void require_movable(const UrdfJoint& joint, const std::string& fi
   if (!joint.unreadable.empty()) throw DataError(joint.unreadable);
   if (joint.type == "floating" || joint.type == "planar")
     fail("is ", joint.type, "; it must be revolute, continuous, prismatic or fixed");
-  if (joint.mimics && joint.moves()) fail("mimics another joint, which a serial arm cannot");
+}
+
+/// The controller of an arm some of whose joints follow others: these are joints of the chain alone.
+/// @param joints those of the chain that move
+VERNIER_LOCAL ControllerMap controller_of(const std::vector<const UrdfJoint*>& joints, const std::string& file) {
+  std::map<std::string, Index> moved;  // joints of the controller, by name
+  for (const UrdfJoint* joint : joints)
+    if (!joint->mimics) moved.emplace(joint->name, static_cast<Index>(moved.size()));
+  const auto n = static_cast<Index>(joints.size()), m = static_cast<Index>(moved.size());
+  if (n == m) return {};
+  MatrixX factors = MatrixX::Zero(n, m);
+  VectorX zeros = VectorX::Zero(n);
+  for (Index i = 0; i < n; ++i) {
+    const UrdfJoint& joint = *joints[static_cast<std::size_t>(i)];
+    if (!joint.mimics) {
+      factors(i, moved.at(joint.name)) = 1;
+      continue;
+    }
+    const auto fail = [&](const auto&... parts) {
+      throw DataError(message(file, ", line ", joint.line, ": joint '", quotable(joint.name), "' mimics '",
+                              quotable(joint.mimicked), "', ", parts...));
+    };
+    const auto leader = moved.find(joint.mimicked);
+    if (leader == moved.end()) fail("which is no joint of the chain that moves by itself");
+    if (!same_value(joint.multiplier, std::floor(joint.multiplier)) || std::abs(joint.multiplier) < 0.5)
+      fail("by a multiplier of ", joint.multiplier, "; it must be a whole number, and not 0");
+    factors(i, leader->second) = joint.multiplier;
+    zeros(i) = joint.offset;
+  }
+  ControllerMap out(factors, zeros);
+  std::vector<JointType> types;
+  for (const UrdfJoint* joint : joints)
+    types.push_back(joint->type == "prismatic" ? JointType::prismatic : JointType::revolute);
+  try {
+    (void)out.types(types);
+  } catch (const std::invalid_argument& error) {
+    throw DataError(file + ": " + error.what());
+  }
+  return out;
 }
 
 }  // namespace detail
@@ -100,6 +140,7 @@ VERNIER_IMPL UrdfChain parse_urdf(const std::string& text, const std::string& fi
   std::vector<detail::JointAxis> axes;
   std::vector<Isometry3> links;
   Isometry3 at = Isometry3::Identity();
+  std::vector<const detail::UrdfJoint*> moving;
   for (const detail::UrdfJoint* joint : detail::joints_from_base(document, out.base_link, out.tip_link, file)) {
     detail::require_movable(*joint, file);
     at = at * joint->origin;
@@ -112,10 +153,16 @@ VERNIER_IMPL UrdfChain parse_urdf(const std::string& text, const std::string& fi
       links.push_back(at);
       out.moving.push_back(static_cast<int>(out.joints.size()));
       out.robot.joint_names.push_back(joint->name);
-      if (joint->limited)
+      moving.push_back(joint);
+      if (joint->mimics) {
+        if (joint->limited)
+          out.remarks.push_back("joint '" + detail::quotable(joint->name) +
+                                "': its limit is ignored, for it follows another joint");
+      } else if (joint->limited) {
         out.robot.limits.emplace_back(joint->lower, joint->upper);
-      else
+      } else {
         out.robot.limits.emplace_back(-infinity, infinity);
+      }
     }
     out.joints.push_back(joint->name);
     out.origins.push_back(joint->origin);
@@ -125,6 +172,7 @@ VERNIER_IMPL UrdfChain parse_urdf(const std::string& text, const std::string& fi
                             "' and link '", detail::quotable(out.tip_link), "'; there must be 1 to ", max_joints));
   const detail::AxisRows found = detail::rows_of_axes(axes);
   out.robot.rows = found.rows;
+  out.robot.controller = detail::controller_of(moving, file);
   out.robot.base = found.base;
   out.robot.drives.resize(axes.size());
   for (std::size_t i = 0; i < links.size(); ++i) out.link_in_row.push_back(found.frames[i].inverse() * links[i]);

@@ -45,7 +45,7 @@ VERNIER_IMPL JointTerms allowed_terms(const ChainTable& nominal, const ErrorMode
   for (const JointTermTraits& row : joint_term_rows) {
     const bool of_joint_values =
         row.kind == JointTermBlock::Kind::gear_ratio || row.kind == JointTermBlock::Kind::coupling;
-    const auto parameters = options.parameters(row.kind);
+    const auto parameters = options.parameters(row.kind, options.down);
     if (parameters && (jointwise || !of_joint_values)) out.add(row.kind, nominal, *parameters);
   }
   return out;

@@ -23,6 +23,8 @@ struct UrdfJoint {
   bool limited = false;                ///< whether it has limits
   double lower = 0, upper = 0;         ///< limits [rad, m]
   bool mimics = false;                 ///< whether it follows another joint
+  std::string mimicked{};              ///< name of that
+  double multiplier = 1, offset = 0;   ///< its value is `multiplier mimicked + offset` [rad, m]
   std::vector<std::string> ignored{};  ///< elements that have no effect here
   std::string unreadable{};            ///< why its frame is not known for sure, a message; empty where it is
 

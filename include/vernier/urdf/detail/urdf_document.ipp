@@ -215,7 +215,15 @@ VERNIER_LOCAL UrdfJoint read_urdf_joint(const tinyxml2::XMLElement& xml, const s
     out.limited = out.lower < out.upper;
     if (!out.limited && out.moves()) out.ignored.push_back("its limit, whose upper value is not above the lower one,");
   }
-  out.mimics = element.child("mimic") != nullptr;
+  if (const auto* found = element.only_child("mimic", owner)) {
+    const UrdfElement mimic(*found, file);
+    out.mimics = true;
+    if (out.moves()) {
+      out.mimicked = mimic.text("joint", message("the mimic of ", owner));
+      if (mimic.has("multiplier")) out.multiplier = mimic.limit("multiplier", owner);
+      out.offset = mimic.limit("offset", owner);
+    }
+  }
   for (const char* name : {"safety_controller", "calibration"})
     if (element.child(name) != nullptr) out.ignored.push_back(message("<", name, ">"));
   judge_unknown(xml, owner, file, out);

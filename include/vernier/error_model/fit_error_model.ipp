@@ -12,6 +12,7 @@
 #include "vernier/error_model/detail/assessment.hpp"
 #include "vernier/error_model/detail/drift_selection.hpp"
 #include "vernier/error_model/detail/expected_terms.hpp"
+#include "vernier/error_model/detail/gravity_direction.hpp"
 #include "vernier/error_model/detail/line_search.hpp"
 #include "vernier/error_model/detail/model_selection.hpp"
 #include "vernier/error_model/detail/prior_transfer.hpp"
@@ -84,7 +85,8 @@ class ErrorModelFit {
       elastic.payload.emplace(input_.nominal, options_.down, payloads->mean);
     const bool deflects = elastic.size() > 0 && model_.add(Block::elastic, elastic);
     if (deflects) model_.solve();
-    if (deflects && options_.estimate_down) estimate.down_std = estimate_down(elastic);
+    if (deflects && options_.estimate_down)
+      estimate.down_std = estimate_down(model_, elastic, input_.nominal, options_.down);
     const Vector3 down = elastic.gravity ? elastic.gravity->down() : options_.down;
     out.stages.push_back({Stage::elastic, deflects, arms()});
 
@@ -205,82 +207,6 @@ class ErrorModelFit {
     const auto parameters = options_.parameters(kind, down);
     if (parameters) terms.add(kind, input_.nominal, *parameters);
     return parameters.has_value();
-  }
-
-  /// Half the sum of squares of whitened residuals and priors at the solution for a direction of gravity.
-  VERNIER_LOCAL double cost_of(JointTerms& terms, const Vector3& down) {
-    terms.gravity.emplace(input_.nominal, down);
-    if (terms.payload) terms.payload.emplace(input_.nominal, down, Payload(terms.payload->reference()));
-    const VectorX scales = problem_.arm.scales(), precisions = problem_.arm.precisions();
-    problem_.arm.set_terms(terms, VERNIER_LATER(scales).tail(terms.size()),
-                           VERNIER_LATER(precisions).tail(terms.size()));
-    problem_.solve(8);
-    model_.changed();
-    const VectorX steps = problem_.arm.steps();
-    return (problem_.stacked(false).residuals.squaredNorm() + weighted_square(precisions, steps)) / 2;
-  }
-
-  /// Estimates the direction of gravity: the best of the axes and of the given direction, then Newton's steps of the
-  /// two angles about it. Torques are linear in the direction; the products of compliance follow it at each trial.
-  /// @param terms those of the problem; they get the direction
-  /// @return      its standard deviation [rad], of the weaker angle
-  VERNIER_LOCAL double estimate_down(JointTerms& terms) {
-    Vector3 down = options_.down;
-    double least = cost_of(terms, down);
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double sign : {-1.0, 1.0}) {
-        Vector3 other = Vector3::Zero();
-        other(axis) = sign;
-        const double cost = cost_of(terms, other);
-        if (!(cost < least)) continue;
-        least = cost;
-        down = other;
-      }
-    constexpr double step = 0.02;  // [rad]
-    double weaker = 1;
-    for (int iteration = 0; iteration < 20; ++iteration) {
-      int smallest = 0;
-      for (int axis = 1; axis < 3; ++axis)
-        if (std::abs(down(axis)) < std::abs(down(smallest))) smallest = axis;
-      Vector3 unit = Vector3::Zero();
-      unit(smallest) = 1;
-      Vector3 a = down.cross(unit);
-      a /= a.norm();
-      const Vector3 b = down.cross(a);
-      const auto at = [&](double along_a, double along_b) {
-        Vector3 moved = down;
-        moved += along_a * a;
-        moved += along_b * b;
-        moved /= moved.norm();
-        return moved;
-      };
-      const auto cost = [&](double along_a, double along_b) { return cost_of(terms, at(along_a, along_b)); };
-      const double here = cost(0, 0), a_up = cost(step, 0), a_down = cost(-step, 0), b_up = cost(0, step),
-                   b_down = cost(0, -step), both = cost(step, step);
-      const double ga = (a_up - a_down) / (2 * step), gb = (b_up - b_down) / (2 * step),
-                   haa = (a_up - 2 * here + a_down) / (step * step), hbb = (b_up - 2 * here + b_down) / (step * step),
-                   hab = (both - a_up - b_up + here) / (step * step), determinant = haa * hbb - hab * hab;
-      const bool convex = haa > 0 && determinant > 0;
-      double along_a = convex ? -(hbb * ga - hab * gb) / determinant : -ga,
-             along_b = convex ? -(haa * gb - hab * ga) / determinant : -gb;
-      constexpr double most = 0.5;
-      const double length = std::hypot(along_a, along_b);
-      if (!convex || length > most) {
-        along_a *= most / length;
-        along_b *= most / length;
-      }
-      const double information = (haa + hbb) / 2 - std::hypot((haa - hbb) / 2, hab);  // of the weaker angle
-      weaker = information > 0 ? 1 / std::sqrt(information) : 1;
-      const Vector3 next = at(along_a, along_b);
-      if (!(cost_of(terms, next) < here)) break;
-      down = next;
-      if (std::hypot(along_a, along_b) < 0.01 * weaker) break;
-    }
-    (void)cost_of(terms, down);
-    model_.solve();
-    const double variance =
-        problem_.stacked(false).residuals.squaredNorm() / static_cast<double>(problem_.measured_values());
-    return weaker * std::sqrt((std::max)(1.0, variance));
   }
 
   /// Adds how prismatic joints depart from a straight motion, over the range in which they were measured.

@@ -116,7 +116,7 @@ vn::View detected(const vn::Board& board, const cv::Mat& grey) {
   const double free = board.marker > 0 ? (board.square - board.marker) / (2 * board.square) : 0.5;
   const std::vector<double> spacing = spacings(corners);
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const int window = std::clamp(static_cast<int>(0.75 * free * spacing[i]), 2, 12);
+    const int window = std::clamp(static_cast<int>(0.9 * free * spacing[i]), 2, 12);
     std::vector<cv::Point2f> one{corners[i]};
     cv::cornerSubPix(grey, one, {window, window}, {-1, -1},
                      {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 60, 1e-4});

@@ -75,11 +75,10 @@ TEST_F(CharucoMeasured, HasNoWildFoldWhateverIsFreed) {
         options.free.emplace_back(name);
         names += std::string(" ") + name;
       }
-    const vn::CameraReport found = calibrated(options);
-    // without any distortion the worst corner is at 7 mm, as the study has it
-    if (std::any_of(options.free.begin(), options.free.end(), [](const std::string& n) { return n[0] == 'k'; }))
-      EXPECT_LT(worst_image(found), 4e-3) << names;
-    EXPECT_LT(found.left_out_max, 9e-3) << names;
+    // without any radial distortion one image is off by 6 mm, as in the study; left-out images then ask for it
+    options.choose = std::none_of(options.free.begin(), options.free.end(),
+                                  [](const std::string& name) { return name.starts_with('k'); });
+    EXPECT_LT(worst_image(calibrated(options)), 4e-3) << names;
   }
 }
 

@@ -29,7 +29,8 @@ struct CameraOptions {
   CameraMount mount = CameraMount::flange;  ///< where the camera is
   /// Intrinsics, one for each camera of the views, which then stay; none: they are unknown, and so are their starts.
   std::vector<Camera> cameras{};
-  /// Intrinsics, by name, that are estimated from the start on, with priors around those that are given.
+  /// Intrinsics, by name, that are estimated from the start on, with priors around those that are given. Radial
+  /// distortion of an order brings that of lower orders along.
   std::vector<std::string> free{};
   /// Whether left-out images decide on further unknowns: radial and tangential distortion, focal lengths, principal
   /// point, radial distortion of sixth order, a bent board.

@@ -126,7 +126,7 @@ VERNIER_LOCAL ViewNumbers without(const ViewNumbers& all, const ViewNumbers& lef
   return out;
 }
 
-VERNIER_LOCAL double middle_of(std::vector<double> values) {
+VERNIER_LOCAL double median_norm_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -180,6 +180,10 @@ VERNIER_IMPL CameraFreedom CameraRun::first_freedom() const {
   for (const std::string& name : options_.free)
     out.intrinsics[static_cast<std::size_t>(std::find(Camera::names.begin(), Camera::names.end(), name) -
                                             Camera::names.begin())] = true;
+  auto& free = out.intrinsics;  // no radial order without those below it: alone it has no bounds outside of the images
+  constexpr std::size_t k1 = 4, k2 = 5, k3 = 8;
+  free[k2] = free[k2] || free[k3];
+  free[k1] = free[k1] || free[k2];
   return out;
 }
 
@@ -398,7 +402,7 @@ VERNIER_IMPL void CameraRun::settle(CameraProblem& problem, const CameraFreedom&
     constexpr double median_of_two = 1.1774, least = 0.01;
     const auto values = static_cast<double>(problem.values()), spare = values - static_cast<double>(problem.unknowns());
     const double inflation = std::sqrt(values / (std::max)(spare, 0.2 * values));
-    problem.pixel_sigma = (std::max)(least, inflation * middle_of(std::move(norms)) / median_of_two);
+    problem.pixel_sigma = (std::max)(least, inflation * median_norm_of(std::move(norms)) / median_of_two);
     problem.free = free;
     problem.solve(60);
   }
@@ -439,7 +443,7 @@ VERNIER_IMPL VectorX CameraRun::left_out_medians(const ViewNumbers& numbers, con
     problem.solve(30);
     for (const std::size_t k : fold) {
       const VectorX errors = problem.board_errors(placed_[k], problem.pose_of(placed_[k]));
-      found[k] = middle_of({errors.begin(), errors.end()});
+      found[k] = median_norm_of({errors.begin(), errors.end()});
     }
   }
   VectorX out(static_cast<Index>(numbers.size()));

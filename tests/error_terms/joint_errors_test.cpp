@@ -338,7 +338,7 @@ TEST(JointErrors, BlocksFollowEachOtherInColumnsAndCoefficients) {
       EXPECT_NEAR(found.joints(i) - q(i), sum, 1e-15) << i;
       for (Index k = 0; k < 2 * n; ++k) {  // width by width, the joints of each
         const double width = terms.hysteresis[static_cast<std::size_t>(k / n)];
-        EXPECT_DOUBLE_EQ(dense(i, terms.tilt_begin() - 2 * n + k),
+        EXPECT_DOUBLE_EQ(dense(i, terms.end_begin() - 2 * n + k),
                          k % n == i ? std::tanh((q(i) - previous(i)) / width) : 0);
       }
     }

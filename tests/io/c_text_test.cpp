@@ -29,16 +29,16 @@ const Features all{"CONTROLLER", "EXP",      "FALLBACK", "GATES",     "GRAVITY",
                    "HYSTERESIS", "LEARNED",  "LINEAR",   "LINKS",     "LOG",          "MAP_PRODUCTS",
                    "MAP_RAW",    "MODIFIED", "ORIENTED", "PRISMATIC", "RADIAL_BASIS", "REDUNDANT",
                    "SIGMOID",    "SINE",     "SINES",    "TANH",      "TILT",         "MAP_SINES_AND_COSINES",
-                   "PAYLOAD",    "MOTION",   "STRAIGHT"};
+                   "PAYLOAD",    "MOTION",   "STRAIGHT", "TORQUES"};
 const std::vector<Features> arms{
     {},
     {"ORIENTED", "LOG", "LEARNED", "GATES", "SINES", "MAP_SINES_AND_COSINES", "TANH", "HARMONICS"},
-    {"EXP",       "FALLBACK", "GATES", "GRAVITY",      "HARMONICS", "HYSTERESIS", "LEARNED",
-     "LINEAR",    "LINKS",    "LOG",   "MAP_PRODUCTS", "MODIFIED",  "ORIENTED",   "PRISMATIC",
-     "REDUNDANT", "SIGMOID",  "SINES", "TILT",         "MOTION",    "STRAIGHT",   "PAYLOAD"},
-    {"REDUNDANT", "GRAVITY", "LINKS", "LEARNED", "GATES", "MAP_RAW", "RADIAL_BASIS"},
+    {"EXP",   "FALLBACK", "GATES",        "GRAVITY",  "HARMONICS", "HYSTERESIS", "LEARNED",   "LINEAR",
+     "LINKS", "LOG",      "MAP_PRODUCTS", "MODIFIED", "ORIENTED",  "PRISMATIC",  "REDUNDANT", "SIGMOID",
+     "SINES", "TILT",     "MOTION",       "STRAIGHT", "PAYLOAD",   "TORQUES"},
+    {"REDUNDANT", "GRAVITY", "TORQUES", "LINKS", "LEARNED", "GATES", "MAP_RAW", "RADIAL_BASIS"},
     {"LEARNED", "GATES", "MAP_RAW", "SINE", "TILT", "MOTION", "LINKS", "EXP"},
-    {"PRISMATIC", "STRAIGHT", "MOTION", "PAYLOAD", "LINKS", "EXP"},
+    {"PRISMATIC", "STRAIGHT", "MOTION", "PAYLOAD", "TORQUES", "LINKS", "EXP"},
     {"CONTROLLER"},
     {"CONTROLLER", "FALLBACK", "GATES", "LEARNED", "MAP_RAW", "SINE", "LOG", "EXP", "ORIENTED"}};
 

@@ -62,6 +62,7 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
   add("GATES", model.fallback || model.learned);
   add("LINKS", out.contains("GRAVITY") || out.contains("PAYLOAD") || out.contains("MOTION"));
   add("LOG", out.contains("ORIENTED") || out.contains("FALLBACK"));
+  add("TORQUES", out.contains("GRAVITY") || out.contains("PAYLOAD"));
   add("EXP", out.contains("MOTION") || out.contains("FALLBACK"));
   if (!model.learned) return out;
   const HiddenLayer& layer = std::get_if<FittedNetwork>(&model.learned->function)->layer;

@@ -147,7 +147,7 @@ TEST_F(Csv, PayloadsAreReadAndWritten) {
 
   const auto centred = read_dataset<1>(
       file("q1_rad,x_mm,y_mm,z_mm,payload_z_m,payload_kg,payload_x_mm,payload_y_mm\n1,0,0,0,0.25,5,10,-20\n"));
-  EXPECT_EQ(centred.payloads(), (MatrixX{{5, 0.01, -0.02, 0.25}}));
+  EXPECT_EQ(centred.payloads(), (Eigen::MatrixXd{{5, 0.01, -0.02, 0.25}}));
   write_dataset(in_folder("again.csv"), centred);
   EXPECT_EQ(read_dataset<1>(in_folder("again.csv")).payloads(), centred.payloads());
   EXPECT_EQ(read_dataset<1>(file("q1_rad,x_mm,y_mm,z_mm\n1,0,0,0\n")).payloads().rows(), 0);

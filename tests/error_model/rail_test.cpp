@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "gauss_newton.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
@@ -15,6 +16,8 @@
 
 namespace vernier::rail_test {
 namespace {
+
+using vernier_test::identify_by_gauss_newton;
 
 using Chain = DhChain<7>;
 constexpr double length = 3;  // [m]
@@ -67,7 +70,7 @@ std::pair<double, bool> outcome(double bend) {
   const auto start = identify_by_gauss_newton(nominal, data, {.frames = Frames::base_and_tool}, squared);
   const auto found = fit_error_model(
       start, data,
-      {.harmonics = 0, .hysteresis = false, .down = Vector3(0, 1, 0), .drift = false, .num_validation_poses = 75},
+      {.harmonics = 0, .down = Vector3(0, 1, 0), .hysteresis = false, .drift = false, .num_validation_poses = 75},
       squared);
   double sum = 0;
   for (Index i = 0; i < fresh.size(); ++i) sum += (found.model().position(fresh.joints(i)) - fresh.position(i)).norm();

@@ -191,7 +191,7 @@ TEST(GravityTilt, NamesAreInOrderAndUnique) {
             (std::vector<std::string>{"hysteresis1_1", "hysteresis2_1", "tilt1_xx", "tilt1_xy", "tilt1_xz", "tilt1_yx",
                                       "tilt1_yy", "tilt1_yz", "tilt2_xx", "tilt2_xy", "tilt2_xz", "tilt2_yx",
                                       "tilt2_yy", "tilt2_yz", "cos2_1", "sin2_1"}));
-  EXPECT_EQ(terms.tilt_begin(), 2);
+  EXPECT_EQ(terms.end_begin(), 2);
   EXPECT_EQ(terms.num_dense_terms(), 14);
   MatrixX dense(2, 14);
   const JointVector<2> q(0.3, 0.4);

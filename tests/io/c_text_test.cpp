@@ -26,21 +26,20 @@ constexpr const char* tables =
 using Features = std::set<std::string>;
 
 /// All features that the text asks for, and sets of them as arms have them; together these compile every line.
-const Features all{"CONTROLLER", "EXP",          "FALLBACK", "GATES",     "GRAVITY",      "TRANSMISSION",
-                   "HYSTERESIS", "LEARNED",      "LINEAR",   "LINKS",     "LOG",          "MAP_PRODUCTS",
-                   "MAP_RAW",    "MODIFIED",     "ORIENTED", "PRISMATIC", "RADIAL_BASIS", "REDUNDANT",
-                   "SIGMOID",    "SINE",         "SINES",    "TANH",      "TILT",         "MAP_SINES_AND_COSINES",
-                   "PAYLOAD",    "STRAIGHTNESS", "MOTION"};
+const Features all{"CONTROLLER", "EXP",      "FALLBACK",     "GATES",     "GRAVITY",      "TRANSMISSION",
+                   "HYSTERESIS", "LEARNED",  "LINEAR",       "LINKS",     "LOG",          "MAP_PRODUCTS",
+                   "MAP_RAW",    "MODIFIED", "ORIENTED",     "PRISMATIC", "RADIAL_BASIS", "REDUNDANT",
+                   "SIGMOID",    "SINE",     "SINES",        "TANH",      "TILT",         "MAP_SINES_AND_COSINES",
+                   "PAYLOAD",    "MOTION",   "STRAIGHTNESS", "TORQUES"};
 const std::vector<Features> arms{
     {},
     {"ORIENTED", "LOG", "LEARNED", "GATES", "SINES", "MAP_SINES_AND_COSINES", "TANH", "TRANSMISSION"},
-    {"EXP",     "FALLBACK",  "GATES",     "GRAVITY",      "TRANSMISSION", "HYSTERESIS",   "LEARNED",
-     "LINEAR",  "LINKS",     "LOG",       "MAP_PRODUCTS", "MODIFIED",     "MOTION",       "ORIENTED",
-     "PAYLOAD", "PRISMATIC", "REDUNDANT", "SIGMOID",      "SINES",        "STRAIGHTNESS", "TILT"},
-    {"EXP", "LINKS", "MOTION", "PRISMATIC", "STRAIGHTNESS"},
-    {"LINKS", "PAYLOAD"},
-    {"REDUNDANT", "GRAVITY", "LINKS", "LEARNED", "GATES", "MAP_RAW", "RADIAL_BASIS"},
+    {"EXP",   "FALLBACK", "GATES",        "GRAVITY",      "TRANSMISSION", "HYSTERESIS", "LEARNED",   "LINEAR",
+     "LINKS", "LOG",      "MAP_PRODUCTS", "MODIFIED",     "ORIENTED",     "PRISMATIC",  "REDUNDANT", "SIGMOID",
+     "SINES", "TILT",     "MOTION",       "STRAIGHTNESS", "PAYLOAD",      "TORQUES"},
+    {"REDUNDANT", "GRAVITY", "TORQUES", "LINKS", "LEARNED", "GATES", "MAP_RAW", "RADIAL_BASIS"},
     {"LEARNED", "GATES", "MAP_RAW", "SINE", "TILT", "MOTION", "LINKS", "EXP"},
+    {"PRISMATIC", "STRAIGHTNESS", "MOTION", "PAYLOAD", "TORQUES", "LINKS", "EXP"},
     {"CONTROLLER"},
     {"CONTROLLER", "FALLBACK", "GATES", "LEARNED", "MAP_RAW", "SINE", "LOG", "EXP", "ORIENTED"}};
 

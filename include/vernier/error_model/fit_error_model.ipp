@@ -119,8 +119,15 @@ class ErrorModelFit {
         model_.learn_spectrum(4);
     }
     if (jointwise) {
-      if (elastic.gravity)  // deflection is clearer once all else is modelled
-        model_.choose_by_evidence(Block::elastic_again, model_.gravity());
+      if (elastic.gravity) {  // deflection is clearer once all else is modelled
+        JointTerms deflecting = problem_.arm.terms();
+        deflecting.gravity = elastic.gravity;
+        deflecting.payload = elastic.payload;
+        if (model_.gravity().empty())
+          model_.add(Block::elastic_again, deflecting);
+        else
+          model_.choose_by_evidence(Block::elastic_again, model_.gravity());
+      }
       model_.size_by_evidence(link_unknowns(problem_.arm));
       model_.solve();
       if (search && harmonics) {

@@ -57,6 +57,7 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
   add("LINEAR", out.contains("GEAR_RATIO") || out.contains("COUPLING"));
   add("MOTION", out.contains("TILT") || out.contains("STRAIGHTNESS"));
   add("LOG", out.contains("ORIENTED") || out.contains("FALLBACK"));
+  add("TORQUES", out.contains("GRAVITY") || out.contains("PAYLOAD"));
   add("EXP", out.contains("MOTION") || out.contains("FALLBACK"));
   if (!model.learned) return out;
   const HiddenLayer& layer = std::get_if<FittedNetwork>(&model.learned->function)->layer;

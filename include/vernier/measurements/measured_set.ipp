@@ -91,6 +91,7 @@ VERNIER_IMPL MeasuredSet MeasuredSet::at_joints(MatrixX other) const {
   }
   out.times.resize(0);
   out.temperatures.resize(0);
+  out.payloads.resize(0, 0);
   out.origin = {};
   return out;
 }

@@ -42,7 +42,7 @@ inline constexpr Quantity gauge_length{length_units, -1e3, 1e3, "beyond any gaug
 inline constexpr Quantity time_of_measuring{
     time_units, -1e11, 1e11, "beyond any time (1e11 s); time_s is in seconds, milliseconds are a column time_ms"};
 inline constexpr Quantity temperature{celsius_unit, -100, 200, "no temperature of an arm (-100 to 200 deg C); kelvin?"};
-inline constexpr Quantity payload{kilogram_unit, 0, 1e5, "no payload of an arm (0 to 1e5 kg)"};
+inline constexpr Quantity payload{kilogram_unit, -1e-300, 1e5, "no payload of an arm (0 to 1e5 kg)"};
 inline constexpr Quantity whole_number{no_unit, -1e9, 1e9, "beyond any number of a pose (1e9)"};
 inline constexpr Quantity standard_length{length_units, -1e3, 1e3, "beyond any standard deviation (1e3 m)"};
 inline constexpr Quantity standard_angle{angle_units, -10, 10, "beyond any standard deviation (10 rad)"};

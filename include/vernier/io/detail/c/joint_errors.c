@@ -273,13 +273,14 @@ static inline void arm_add_guides_(const arm_arm_ *arm, const arm_links_ *links,
 /* Tilts of the joints' frames under gravity, and guides: a motion of the arm's end in the base frame of the chain. */
 static inline void arm_add_motion_(const arm_arm_ *arm, const arm_links_ *links, const double *q, double *end, double *J) {
   double shift[3] = {0, 0, 0}, turn[3] = {0, 0, 0}, rates[6 * ARM_CHAIN_], R[9], left[9], rotated[9], v[3], w[3];
+  const double none = 0.0 * arm->orders; /* 0 that no compiler makes a call of memset */
   int j, k;
 #if HAS_TILT
   const double *down = arm->terms[ARM_TILT_].parameters;
   int i;
 #endif
   (void)q;
-  for (k = 0; k < 6 * ARM_CHAIN_; ++k) rates[k] = 0;
+  for (k = 0; k < 6 * ARM_CHAIN_; ++k) rates[k] = none;
 #if HAS_TILT
   for (i = 0; arm->terms[ARM_TILT_].of && i < ARM_CHAIN_; ++i) {
     const double *c = arm->terms[ARM_TILT_].of + 6 * i, *x = links->x + 3 * i, *y = links->y + 3 * i;

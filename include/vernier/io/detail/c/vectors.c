@@ -9,7 +9,7 @@ static inline void arm_cross_(const double *a, const double *b, double *out) {
   out[1] = y;
   out[2] = z;
 }
-#if HAS_GRAVITY
+#if HAS_TORQUES
 
 static inline double arm_triple_(const double *a, const double *b, const double *c) {
   double bc[3];

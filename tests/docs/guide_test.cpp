@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The blocks of code of the pages in docs/how-to and docs/reference. What a block takes for granted stands before it;
-// the checks behind it are about what it made. Only the block on MPI is compiled and not run here: tests/mpi runs its
-// like.
+// the checks behind it are about what it made. The blocks on MPI, cameras and payloads are compiled and not run here:
+// tests/mpi, tests/camera and tests/io run their like.
 
 #include <gtest/gtest.h>
 
@@ -14,6 +14,7 @@
 #include "page_blocks.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/calibration/calibrate.hpp"
+#include "vernier/calibration/camera_calibration.hpp"
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/calibration/evaluate.hpp"
 #include "vernier/ceres.hpp"
@@ -26,6 +27,7 @@
 #include "vernier/data/split.hpp"
 #include "vernier/evaluation/rank_tests.hpp"
 #include "vernier/identification/identify_by_contacts.hpp"
+#include "vernier/io/camera_files.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/io/robot_file.hpp"
 #include "vernier/kinematics/robots.hpp"
@@ -46,18 +48,30 @@ namespace vernier::guide_test {
 namespace {
 
 static_assert(calibrate_blocks == 5 && calibrate_by_contacts_blocks == 1 && calibration_in_code_blocks == 2 &&
-                  check_data_blocks == 1 && compare_methods_blocks == 1 && correct_paths_blocks == 1 &&
-                  correct_programs_blocks == 1 && correct_targets_blocks == 2 && describe_a_robot_blocks == 2 &&
-                  find_branches_blocks == 1 && learn_errors_blocks == 3 && reregister_blocks == 2 &&
-                  run_in_parallel_blocks == 2 && use_an_earlier_calibration_blocks == 1,
+                  calibrate_with_a_camera_blocks == 1 && check_data_blocks == 1 && compare_methods_blocks == 1 &&
+                  correct_paths_blocks == 1 && correct_programs_blocks == 1 && correct_targets_blocks == 2 &&
+                  describe_a_robot_blocks == 2 && find_branches_blocks == 1 && learn_errors_blocks == 3 &&
+                  payload_blocks == 1 && reregister_blocks == 2 && run_in_parallel_blocks == 2 &&
+                  use_an_earlier_calibration_blocks == 1,
               "a block of docs/ without a test");
 // README and tutorials are programs, robot_files and your_own have tests of their own, and architecture.md sketches.
-static_assert(all_blocks == 25 + architecture_blocks + README_blocks + first_program_blocks +
+static_assert(all_blocks == 27 + architecture_blocks + README_blocks + first_program_blocks +
                                 simulate_and_learn_blocks + robot_files_blocks + your_own_blocks,
               "a page with blocks of code, but without a test");
 
 using namespace vernier::literals;
 using Chain = DhChain<6>;
+
+[[maybe_unused]] void calibrates_by_a_camera() {
+  namespace vn = vernier;
+#include "calibrate_with_a_camera_1.inc"
+}
+
+[[maybe_unused]] auto carries() {
+  namespace vn = vernier;
+#include "payload_1.inc"
+  return loaded;
+}
 
 const Chain arm = robots::ur10().chain;
 

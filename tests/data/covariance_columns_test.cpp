@@ -66,5 +66,33 @@ TEST_F(CovarianceColumns, WithMistakesAreRefused) {
   EXPECT_NE(complaint("q1_rad,q2_rad,x_mm,y_mm,z_mm,cov_11\n1,2,3,4,5,1\n").find("21 columns"), std::string::npos);
 }
 
+TEST_F(CovarianceColumns, StandBesideOrientationsOfEachKind) {
+  const std::string sigmas = ",sx_mm,sy_mm,sz_mm,srx_mrad,sry_mrad,srz_mrad\n", ones = ",1,1,1,1,1,1\n";
+  const vn::Vector3 turn(0, 0, 1.5707963267948966);  // x to y
+  for (const auto& [columns, values] : {std::pair{"rx_rad,ry_rad,rz_rad", "0,0,1.5707963267948966"},
+                                        std::pair{"qw,qx,qy,qz", "0.7071067811865476,0,0,0.7071067811865476"},
+                                        std::pair{"r11,r12,r13,r21,r22,r23,r31,r32,r33", "0,-1,0,1,0,0,0,0,1"}}) {
+    const vn::Dataset<2> poses = read("q1_rad,q2_rad,x_mm,y_mm,z_mm," + std::string(columns) + sigmas + "1,2,3,4,5," +
+                                      std::string(values) + ones);
+    ASSERT_EQ(poses.orientations().rows(), 1) << columns;
+    EXPECT_LT((vn::Vector3(poses.orientations().row(0).transpose()) - turn).norm(), 1e-12) << columns;
+    EXPECT_NEAR(poses.covariances().at(0)(5, 5), 1e-6, 1e-18) << columns;
+  }
+}
+
+TEST_F(CovarianceColumns, RefuseOrientationsThatAreNone) {
+  const auto complaint = [&](const std::string& columns, const std::string& values) {
+    return vernier_test::complaint(
+        [&] { (void)read("q1_rad,q2_rad,x_mm,y_mm,z_mm," + columns + "\n1,2,3,4,5," + values + "\n"); });
+  };
+  EXPECT_NE(complaint("qw,qx,qy,qz", "1,1,0,0").find("line 2, column qw: a quaternion of norm 1.41"),
+            std::string::npos);
+  EXPECT_NE(complaint("qw,qx,qy", "1,0,0").find("qw, qx, qy and qz"), std::string::npos);
+  EXPECT_NE(complaint("qw,qx,qy,qz,rx_rad,ry_rad,rz_rad", "1,0,0,0,0,0,0").find("both give an orientation"),
+            std::string::npos);
+  const std::string nine = "r11,r12,r13,r21,r22,r23,r31,r32,r33";
+  EXPECT_NE(complaint(nine, "0,1,0,1,0,0,0,0,1").find("are no rotation matrix"), std::string::npos);  // a reflection
+}
+
 }  // namespace
 }  // namespace covariance_columns_test

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "vernier/core/register_points.hpp"
 #include "vernier/core/same_value.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/core/so3.hpp"
@@ -116,6 +117,50 @@ VERNIER_IMPL MatrixX read_joint_columns(const std::string& path, int joints, std
   return out;
 }
 
+/// Orientations as quaternions or matrices, as rotation vectors, n x 3; no rows where the file has neither.
+VERNIER_LOCAL MatrixX other_orientations(const CsvTable& table) {
+  std::vector<CsvColumn> quaternion, matrix;
+  for (const char* name : {"qw", "qx", "qy", "qz"})
+    if (auto found = table.find(name, quantities::covariance_entry)) quaternion.push_back(std::move(*found));
+  for (int r = 1; r <= 3; ++r)
+    for (int c = 1; c <= 3; ++c)
+      if (auto found = table.find(message('r', r, c), quantities::covariance_entry))
+        matrix.push_back(std::move(*found));
+  if (quaternion.empty() && matrix.empty()) return MatrixX(0, 3);
+  if (!quaternion.empty() && !matrix.empty())
+    table.fail_in_header("columns ", quaternion[0].name, " and ", matrix[0].name, " both give an orientation");
+  if (table.find("rx", quantities::rotation_angle))
+    table.fail_in_header("columns rx and ", (quaternion.empty() ? matrix : quaternion)[0].name,
+                         " both give an orientation");
+  if (!quaternion.empty() && quaternion.size() != 4)
+    table.fail_in_header("a quaternion needs the columns qw, qx, qy and qz");
+  if (!matrix.empty() && matrix.size() != 9)
+    table.fail_in_header("a rotation matrix needs the nine columns r11, r12 .. r33");
+  const MatrixX values = table.numbers(quaternion.empty() ? matrix : quaternion);
+  MatrixX out(values.rows(), 3);
+  for (Index i = 0; i < values.rows(); ++i) {
+    Matrix3 turn;
+    if (matrix.empty()) {
+      const Eigen::Quaterniond q(values(i, 0), values(i, 1), values(i, 2), values(i, 3));
+      if (!(std::abs(q.norm() - 1) < 0.01))
+        table.fail_in_row(i, quaternion[0], "a quaternion of norm ", q.norm(), ", must be 1");
+      turn = q.normalized().toRotationMatrix();
+    } else {
+      for (Index k = 0; k < 9; ++k) turn(k / 3, k % 3) = values(i, k);
+      const Matrix3 square = turn * turn.transpose();
+      double off = 0;
+      for (Index r = 0; r < 3; ++r)
+        for (Index c = 0; c < 3; ++c) off = (std::max)(off, std::abs(square(r, c) - (r == c ? 1 : 0)));
+      if (!(off < 1e-3) || !(turn.determinant() > 0))
+        table.fail_in_row(i, matrix[0], "the columns r11 to r33 are no rotation matrix");
+      turn = nearest_rotation(turn);
+    }
+    const Vector3 vector = log_so3(turn);
+    for (Index k = 0; k < 3; ++k) out(i, k) = vector(k);
+  }
+  return out;
+}
+
 /// Covariances of the rows of a file of poses: standard deviations, or entries of matrices; none where it has neither.
 VERNIER_LOCAL std::vector<Matrix6> covariances_of(const CsvTable& table, bool oriented) {
   std::vector<CsvColumn> sigmas, entries;
@@ -163,6 +208,11 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   std::vector<CsvColumn> columns = joint_columns(table, joints, types, format.controller);
   for (CsvColumn& column : pose_columns(table)) columns.push_back(std::move(column));
   PoseColumns out{with_chain_joints(table.numbers(columns), format.controller), {}, {}, {}, {}, table.origin(), {}};
+  if (const MatrixX turns = other_orientations(table); turns.rows() > 0) {
+    out.values.conservativeResize(Eigen::NoChange, joints + 6);
+    for (Index c = 0; c < 3; ++c)
+      for (Index i = 0; i < turns.rows(); ++i) out.values(i, joints + 3 + c) = turns(i, c);
+  }
   out.covariances = covariances_of(table, out.values.cols() > joints + 3);
   const Index n = out.values.rows();
   const VectorX times = values_of(table, "time", quantities::time_of_measuring).value_or(VectorX());

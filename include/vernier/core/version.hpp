@@ -7,6 +7,6 @@
 /// Changes with every incompatible release.
 #define VERNIER_VERSION_MAJOR 0
 /// Changes with every release that adds.
-#define VERNIER_VERSION_MINOR 1
+#define VERNIER_VERSION_MINOR 2
 /// Changes with every release that only mends.
 #define VERNIER_VERSION_PATCH 0

@@ -157,6 +157,16 @@ TEST(CalibrationReport, TenPosesAreEnough) {
             "at the 95th percentile, 0.01 mm maximum; links as designed: 0.55 mm mean.\n"
             "Deployed, as left-out poses decide: geometry.\n");
   EXPECT_EQ(report.few_poses(), "");
+  report.held_out_poses = {0, 0, 1, 1, 2, 2, 3, 3, 4, 4};  // each read twice: means 1.5, 3.5 .. 9.5, t of 4 is 2.776
+  EXPECT_EQ(report.independent_poses(), 5);
+  EXPECT_EQ(report.few_poses(),
+            "Only 5 independent poses were held out: too few to judge the accuracy; hold out at least 10.");
+  report.block_error = 12e-6;
+  EXPECT_EQ(report.verdict()[1],
+            "Position error of all 10 held-out rows (5 independent poses): 0.0055 mm mean (95 % interval 0.00157 to "
+            "0.00943 mm), 0.00955 mm at the 95th percentile, 0.01 mm maximum; links as designed: 0.55 mm mean; the "
+            "training rows follow a path, and blocks of neighbours left out have 0.012 mm.");
+  report.held_out_poses.clear();
   for (StageErrors& stage : report.stages) stage.position.conservativeResize(9);
   EXPECT_EQ(report.few_poses(), "Only 9 poses were held out: too few to judge the accuracy; hold out at least 10.");
   EXPECT_EQ(report_of_four().verdict()[1],

@@ -67,5 +67,24 @@ TEST(MeanInterval, IsThatOfStudent) {
   EXPECT_NE(complaint([] { (void)MeanInterval::of(VectorX()); }).find("no errors"), std::string::npos);
 }
 
+// Readings of one pose are one piece of evidence: the interval is that of the means of poses.
+TEST(MeanInterval, OfGroupsIsThatOfTheirMeans) {
+  const VectorX means = (VectorX(6) << 1, 2, 4, 3, 6, 2).finished();
+  VectorX errors(12);
+  std::vector<Index> groups;
+  for (Index i = 0; i < 12; ++i) {
+    errors(i) = means(i % 6) + (i < 6 ? -0.5 : 0.5);
+    groups.push_back(i % 6);
+  }
+  const MeanInterval grouped = MeanInterval::of(errors, groups), expected = MeanInterval::of(means);
+  EXPECT_NEAR(grouped.mean, expected.mean, 1e-14);
+  EXPECT_NEAR(grouped.upper, expected.upper, 1e-14);
+  EXPECT_GT(grouped.upper - grouped.mean, MeanInterval::of(errors).upper - grouped.mean);
+  EXPECT_EQ(MeanInterval::of(errors, {}).upper, MeanInterval::of(errors).upper);
+  groups.pop_back();
+  EXPECT_NE(complaint([&] { (void)MeanInterval::of(errors, groups); }).find("11 groups for 12 errors"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace vernier::chi_square_test

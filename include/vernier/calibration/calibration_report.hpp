@@ -65,6 +65,9 @@ struct CalibrationReport {
   std::vector<StageErrors> stages{};         ///< of the held-out poses, in order
   std::vector<JointReport> joints{};         ///< one a joint
   std::vector<PoseAdvice> advice{};          ///< for the first weakly determined parameters
+  std::vector<Index> held_out_poses{};       ///< number of the pose that each held-out row visits, from 0
+  double block_error = 0;                    ///< of training poses that follow a path: mean error of blocks of
+                                             ///< neighbours left out [m]; else 0
   VectorX gates;                             ///< share of the joint-wise terms at each held-out pose
   StageName chosen{};                        ///< the stage that is deployed
   std::optional<double> mean_temperature{};  ///< of the training poses [deg C], where the model changes with it
@@ -88,14 +91,16 @@ struct CalibrationReport {
   VectorX left_out_errors{};            ///< of some training poses, each predicted by the model without it [m]
   std::vector<Index> left_out_rows{};   ///< which poses, counted over the stations
 
-  /// Number of held-out poses.
+  /// Number of held-out rows.
   Index test_poses() const { return stages.empty() ? 0 : stages.front().position.size(); }
+  /// Number of independent poses among them: rows that visit one pose count once.
+  VERNIER_API Index independent_poses() const;
   /// Number of held-out poses outside the range of validity, the measured joint ranges widened a little.
   VERNIER_API Index extrapolated() const;
   /// The errors of a stage.
   /// @throws std::invalid_argument where it is not there
   VERNIER_API const StageErrors& stage(const StageName& name) const;
-  /// Mean position error of the deployed stage at all held-out poses, with its 95 % interval [m].
+  /// Mean position error of the deployed stage at all held-out poses, independent ones, with its 95 % interval [m].
   /// @throws std::invalid_argument without held-out poses
   VERNIER_API MeanInterval held_out_mean() const;
   /// That so few poses were held out that errors say little; empty from ten poses on.

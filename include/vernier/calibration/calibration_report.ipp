@@ -25,13 +25,20 @@ VERNIER_IMPL const StageErrors& CalibrationReport::stage(const StageName& name) 
   throw std::invalid_argument(message("CalibrationReport: there is no stage '", name.key(), "'"));
 }
 
-VERNIER_IMPL MeanInterval CalibrationReport::held_out_mean() const { return MeanInterval::of(stage(chosen).position); }
+VERNIER_IMPL MeanInterval CalibrationReport::held_out_mean() const {
+  return MeanInterval::of(stage(chosen).position, held_out_poses);
+}
+
+VERNIER_IMPL Index CalibrationReport::independent_poses() const {
+  if (held_out_poses.empty()) return test_poses();
+  return *std::max_element(held_out_poses.begin(), held_out_poses.end()) + 1;
+}
 
 VERNIER_IMPL std::string CalibrationReport::few_poses() const {
   constexpr Index enough = 10;
-  const Index n = test_poses();
+  const Index n = independent_poses();
   if (n >= enough) return "";
-  return message("Only ", counted(n, "pose was", "poses were"),
+  return message("Only ", n, ' ', n < test_poses() ? "independent " : "", n == 1 ? "pose was" : "poses were",
                  " held out: too few to judge the accuracy; hold out at least ", enough, ".");
 }
 
@@ -107,14 +114,21 @@ VERNIER_LOCAL ErrorStatistics statistics_of(const std::vector<double>& errors) {
 VERNIER_LOCAL std::string describe_accuracy(const CalibrationReport& report) {
   const auto e = ErrorStatistics::of(report.stage(report.chosen).position * 1e3);
   const MeanInterval mean = report.held_out_mean();
-  std::string out = message("Position error of all ", e.n, " held-out poses: ", brief(e.mean), " mm mean (",
-                            std::isfinite(mean.upper) ? message("95 % interval ", brief(mean.lower * 1e3), " to ",
-                                                                brief(mean.upper * 1e3), " mm")
-                                                      : std::string("too few poses for an interval"),
-                            "), ", brief(e.p95), " mm at the 95th percentile, ", brief(e.max), " mm maximum");
+  std::string out =
+      message("Position error of all ", e.n, " held-out ",
+              report.independent_poses() < e.n ? message("rows (", report.independent_poses(), " independent poses): ")
+                                               : std::string("poses: "),
+              brief(e.mean), " mm mean (",
+              std::isfinite(mean.upper)
+                  ? message("95 % interval ", brief(mean.lower * 1e3), " to ", brief(mean.upper * 1e3), " mm")
+                  : std::string("too few poses for an interval"),
+              "), ", brief(e.p95), " mm at the 95th percentile, ", brief(e.max), " mm maximum");
   for (const StageErrors& one : report.stages)
     if (one.name == Stage::frames)
       out += message("; links as designed: ", brief(one.position.mean() * 1e3), " mm mean");
+  if (report.block_error > 0)
+    out += message("; the training rows follow a path, and blocks of neighbours left out have ",
+                   brief(report.block_error * 1e3), " mm");
   return out + ".";
 }
 

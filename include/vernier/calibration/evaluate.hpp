@@ -16,6 +16,7 @@
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/calibration/pose_advice.hpp"
 #include "vernier/core/detail/steady_seconds.hpp"
+#include "vernier/data/same_pose.hpp"
 #include "vernier/evaluation/position_errors.hpp"
 #include "vernier/measurements/measurements.hpp"
 
@@ -157,6 +158,18 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   out.evaluation_seconds = deployed != nullptr
                                ? evaluation(CartesianCorrected(chosen_model, deployed->predictor, deployed->coverage))
                                : evaluation(chosen_model);
+
+  Index rows = 0;
+  for (const auto& data : test) rows += data.size();
+  MatrixX joints(rows, N);
+  rows = 0;
+  for (const auto& data : test) {
+    joints.middleRows(rows, data.size()) = data.joints();
+    rows += data.size();
+  }
+  const auto types = errors.model().nominal().model().joint_types();
+  out.held_out_poses = pose_numbers(joints, {.joint_types = types});
+  out.block_error = errors.block_error;
 
   out.gates = detail::over_stations<N>(test, [&](std::size_t, const Dataset<N>& data) {
     VectorX gates(data.size());

@@ -78,6 +78,7 @@ struct ErrorModelEstimate {
   VectorX left_out_errors{};         ///< of some poses, each predicted by the model without it, drift not known [m]
   std::vector<Index> left_out_rows{};  ///< which poses, counted over the stations
   VectorX geometry_left_out_errors{};  ///< of the same poses, by geometry and frames alone [m]
+  double block_error = 0;              ///< mean error of blocks of neighbours left out, if poses follow a path; else 0
   MatrixX covariance{};                ///< of all unknowns, in units of their scales
   double variance_factor = 1;          ///< covariance divided by the inverse of the normal equations' matrix
   double residual_variance = 1;        ///< of the whitened residuals: that factor as far as the residuals alone tell

@@ -196,6 +196,7 @@ class ErrorModelFit {
     estimate.blocks = model_.blocks;
     estimate.converged = model_.converged;
     assess(model_, estimate);
+    if (model_.ordered() && input_.sets.front().locates()) estimate.block_error = model_.left_out_errors().mean();
     for (SessionDrift& of_station : estimate.drift)
       if (!of_station.empty()) of_station.step_variance = problem_.drift_step_variance(estimate.residual_variance);
     if (geometry_alone) estimate.geometry_left_out_errors = estimate.left_out_errors;

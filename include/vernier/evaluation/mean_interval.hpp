@@ -4,6 +4,8 @@
 /// @file
 /// The mean of some errors with its confidence interval.
 
+#include <span>
+
 #include "vernier/core/types.hpp"
 
 namespace vernier {
@@ -17,6 +19,10 @@ struct MeanInterval {
 
   /// @throws std::invalid_argument without errors
   VERNIER_API static MeanInterval of(const ConstVectorRef& errors);
+  /// Of the means of some groups: errors of one group, such as readings of one pose, depend on each other.
+  /// @param groups the group of each error, from 0; none: each error is one
+  /// @throws std::invalid_argument without errors, or for another number of groups
+  VERNIER_API static MeanInterval of(const ConstVectorRef& errors, std::span<const Index> groups);
 };
 
 }  // namespace vernier

@@ -26,4 +26,18 @@ VERNIER_IMPL MeanInterval MeanInterval::of(const ConstVectorRef& errors) {
   return {mean, (std::max)(0.0, mean - half), mean + half};
 }
 
+VERNIER_IMPL MeanInterval MeanInterval::of(const ConstVectorRef& errors, std::span<const Index> groups) {
+  if (groups.empty()) return of(errors);
+  demand(static_cast<Index>(groups.size()) == errors.size(), "MeanInterval: ", groups.size(), " groups for ",
+         errors.size(), " errors");
+  VectorX sums = VectorX::Zero(*std::max_element(groups.begin(), groups.end()) + 1), counts = sums;
+  for (Index i = 0; i < errors.size(); ++i) {
+    const Index group = groups[static_cast<std::size_t>(i)];
+    sums(group) += errors(i);
+    counts(group) += 1;
+  }
+  for (Index k = 0; k < sums.size(); ++k) sums(k) /= counts(k);
+  return of(sums);
+}
+
 }  // namespace vernier

@@ -32,6 +32,7 @@ VERNIER_IMPL ReportInput report_input(const CalibrationReport& report, const std
   const std::vector<std::string> details = report.details();
   out.sentences.insert(out.sentences.end(), details.begin(), details.end());
   out.ellipsoid_coverage = report.ellipsoid_coverage;
+  out.poses.visited = report.held_out_poses;
   out.poses.normalised = report.normalised_errors;
   out.poses.gates = report.gates;
   out.joints = report.joints;

@@ -20,6 +20,7 @@ struct ReportPoses {
   std::vector<std::string> files{};       ///< names of the files of measured poses
   std::vector<int> file{};                ///< which of them, one a pose; empty: all of the first
   std::vector<Index> line{};              ///< its line there, from 1; empty: rows 0 .. n-1
+  std::vector<Index> visited{};           ///< number of the pose that each row visits; empty: each its own
   VectorX normalised{};                   ///< errors in predicted standard deviations; empty where unknown
   VectorX gates{};                        ///< share of the joint-wise terms; empty where there are none
 };

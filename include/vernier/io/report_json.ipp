@@ -97,6 +97,8 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
   return {{"robot", robot},
           {"train_rows", report.train_poses},
           {"test_rows", report.test_poses()},
+          {"independent_test_poses", report.independent_poses()},
+          {"left_out_blocks_mm", report.block_error > 0 ? Json(report.block_error * 1e3) : Json()},
           {"outliers_kept", report.outliers_kept},
           {"outliers", outliers},
           {"stages", stages_to_json(report.stages)},

@@ -53,6 +53,8 @@ class ModelSelection {
   VERNIER_API LeftOutBlocks left_out(const Linearised& at, const VectorX& precisions) const;
   /// Norms of their position errors as the problem is [m].
   VERNIER_API VectorX left_out_errors() const;
+  /// Whether poses follow a path, and are left out in blocks of neighbours.
+  bool ordered() const { return !left_together_.empty(); }
   /// The position errors [m], 3 x poses, from equations that are factorised.
   VERNIER_API Eigen::Matrix3Xd left_out_errors(const FactorisedEquations& solved) const;
 

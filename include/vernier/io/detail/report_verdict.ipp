@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "vernier/core/argsort.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/number_text.hpp"
 #include "vernier/evaluation/mean_interval.hpp"
@@ -83,7 +84,7 @@ VERNIER_IMPL std::string verdict_section(const ReportInput& input) {
   const StageErrors& after = stage_of(input, input.after);
   const ErrorStatistics e = ErrorStatistics::of(after.position * 1e3),
                         was = ErrorStatistics::of(stage_of(input, input.before).position * 1e3);
-  const MeanInterval interval = MeanInterval::of(after.position * 1e3);
+  const MeanInterval interval = MeanInterval::of(after.position * 1e3, input.poses.visited);
   std::string decision, kind;
   if (input.accept) {
     const double limit = *input.accept * 1e3;
@@ -107,7 +108,7 @@ VERNIER_IMPL std::string verdict_section(const ReportInput& input) {
   out += paragraph(message("Of ", e.n, input.held_out ? " held-out poses" : " poses",
                            input.rule.empty() ? "" : " (" + input.rule + ")",
                            input.train_poses > 0 ? message(", fitted to ", input.train_poses, " others") : "",
-                           ". The interval is that of the mean by Student's t, the poses taken as independent."),
+                           ". The interval is that of the mean by Student's t, rows that visit one pose counted once."),
                    "faint");
   out += look_at(input);
   if (!input.sentences.empty())

@@ -94,7 +94,7 @@ TEST(HandEyeByCameras, StateTrueStandardDeviationsForAnInexactArm) {
   for (int arm = 0; arm < arms; ++arm) {
     SimulatedViews simulated = exact_arm(setup, 40 + static_cast<std::uint64_t>(arm));
     vn::Rng rng(static_cast<std::uint64_t>(arm));
-    const auto drawn = [&] {
+    const auto drawn = [&]() -> vn::Vector3 {
       return 0.3e-3 * vn::Vector3(rng.normal_pair()[0], rng.normal_pair()[0], rng.normal_pair()[0]);
     };
     for (vn::Isometry3& flange : simulated.rows.flanges) {

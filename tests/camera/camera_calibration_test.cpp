@@ -45,6 +45,7 @@ TEST_P(HandEyeByCamera, FindsFramesAndIntrinsics) {
       setup.board, simulated.views, simulated.rows,
       {.mount = setup.on_flange ? vn::CameraMount::flange : vn::CameraMount::fixed, .left_out = false});
   EXPECT_NEAR(found.pixel_sigma, 0.2, 0.02);
+  EXPECT_LT(found.pose_excess, 1.2);
   ASSERT_EQ(found.in_base.size(), simulated.bases.size());
   for (std::size_t k = 0; k < found.in_base.size(); ++k) {
     const vn::Isometry3 truth = simulated.bases[k].inverse();
@@ -82,6 +83,36 @@ TEST_P(HandEyeByCamera, ToleratesWrongCorners) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothMounts, HandEyeByCamera, ::testing::Bool());
+
+TEST(HandEyeByCameras, StateTrueStandardDeviationsForAnInexactArm) {
+  ViewSetup setup;
+  setup.board = {.rows = 6, .columns = 7, .square = 0.03, .scale_sigma = 1e-4};
+  setup.images = 16;
+  setup.places = 1;
+  double squares = 0;
+  constexpr int arms = 20;
+  for (int arm = 0; arm < arms; ++arm) {
+    SimulatedViews simulated = exact_arm(setup, 40 + static_cast<std::uint64_t>(arm));
+    vn::Rng rng(static_cast<std::uint64_t>(arm));
+    const auto drawn = [&]() -> vn::Vector3 {
+      return 0.3e-3 * vn::Vector3(rng.normal_pair()[0], rng.normal_pair()[0], rng.normal_pair()[0]);
+    };
+    for (vn::Isometry3& flange : simulated.rows.flanges) {
+      const vn::Vector3 shift = drawn(), turn = drawn();
+      flange = vn::rigid_motion(vn::exp_so3(turn) * flange.linear(), flange.translation() + shift);
+    }
+    const vn::CameraReport found = vn::calibrate_hand_eye(
+        setup.board, simulated.views, simulated.rows, {.cameras = {setup.camera}, .choose = false, .left_out = false});
+    EXPECT_GT(found.pose_excess, 1.2);
+    EXPECT_NEAR(found.pixel_sigma, setup.noise, 0.1 * setup.noise);
+    for (vn::Index axis = 0; axis < 3; ++axis) {
+      const double off = (found.in_flange[0](axis, 3) - simulated.tool(axis, 3)) / found.in_flange_std[0](axis);
+      squares += off * off / (3 * arms);
+    }
+  }
+  EXPECT_GT(std::sqrt(squares), 0.65);
+  EXPECT_LT(std::sqrt(squares), 1.4);
+}
 
 TEST(HandEyeByCameras, OfTwoCamerasOnTheFlangeHasEach) {
   ViewSetup setup;

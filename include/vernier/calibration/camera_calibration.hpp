@@ -90,13 +90,14 @@ struct CameraReport {
   std::vector<ImagePose> poses{};                             ///< of the views that determine one
   std::vector<CameraBlock> blocks{};                          ///< in the order in which they were tried
   std::vector<std::string> without_row{}, without_corners{};  ///< images that are in one file alone
-  Index ambiguous = 0;               ///< number of views whose better fitting pose was the wrong one of two
-  Index downweighted = 0;            ///< number of corners that count less than half
-  double pixel_sigma = 0;            ///< standard deviation of a corner, as the residuals have it [px]
-  double mean = 0;                   ///< distance on the board, mean of all corners [m]
-  double left_out_mean = 0;          ///< the same of left-out images; 0 where none were left out
-  double left_out_max = 0;           ///< largest one
-  bool choices_repeated = false;     ///< whether all decisions were made again without each left-out image
+  Index ambiguous = 0;            ///< number of views whose better fitting pose was the wrong one of two
+  Index downweighted = 0;         ///< number of corners that count less than half
+  double pixel_sigma = 0;         ///< standard deviation of a corner about the pose that its image shows best [px]
+  double pose_excess = 1;         ///< factor of all standard deviations: images scatter more than their pixels explain
+  double mean = 0;                ///< distance on the board, mean of all corners [m]
+  double left_out_mean = 0;       ///< the same of left-out images; 0 where none were left out
+  double left_out_max = 0;        ///< largest one
+  bool choices_repeated = false;  ///< whether all decisions were made again without each left-out image
   std::optional<ArmGeometry> arm{};  ///< chain between base and tool; none where only poses were given
   /// Parameters of the chain that were estimated: name, value less nominal, standard deviation [m, rad].
   struct Parameter {

@@ -475,6 +475,7 @@ VERNIER_IMPL CameraFreedom CameraRun::choose(const ViewNumbers& numbers, std::ve
 VERNIER_IMPL void CameraRun::report_images(const CameraProblem& problem, CameraReport& out) const {
   double sum = 0;
   Index corners = 0;
+  const double ratio = out.pixel_sigma / problem.pixel_sigma, by_pixels = ratio > 0 ? ratio * ratio : 1;
   const std::vector<Isometry3> poses = problem.poses();
   for (std::size_t v = 0; v < placed_.size(); ++v) {
     const View& view = *placed_[v].view;
@@ -493,7 +494,7 @@ VERNIER_IMPL void CameraRun::report_images(const CameraProblem& problem, CameraR
     out.images.push_back(std::move(one));
     if (const auto seen = problem.seen_pose(v))
       if (positive_definite(seen->second, 6))
-        out.poses.push_back({placed_[v].row, placed_[v].base, placed_[v].tool, seen->first, seen->second});
+        out.poses.push_back({placed_[v].row, placed_[v].base, placed_[v].tool, seen->first, by_pixels * seen->second});
   }
   out.mean = sum / static_cast<double>(corners);
 }
@@ -533,7 +534,10 @@ VERNIER_IMPL void CameraRun::report_unknowns(const CameraProblem& problem, Camer
   const MatrixX inverse = problem.covariance();
   const bool known = inverse.size() > 0;
   const VectorX scales = problem.scales();
-  const auto variance = [&](Index k) { return known ? inverse(k, k) * scales(k) * scales(k) : 0; };
+  // errors of the arm are common to the corners of an image
+  const double excess = problem.scatter().poses;
+  const auto variance = [&](Index k) { return known ? excess * inverse(k, k) * scales(k) * scales(k) : 0; };
+  out.pose_excess = std::sqrt(excess);
   Index at = 0;
   if (problem.free.arm) {
     const VectorX now = problem.state.arm->parameters();
@@ -551,7 +555,8 @@ VERNIER_IMPL void CameraRun::report_unknowns(const CameraProblem& problem, Camer
     for (const Isometry3& pose : poses) {
       Matrix6 covariance = Matrix6::Zero();
       for (Index r = 0; r < 6 && known; ++r)
-        for (Index c = 0; c < 6; ++c) covariance(r, c) = inverse(at + r, at + c) * scales(at + r) * scales(at + c);
+        for (Index c = 0; c < 6; ++c)
+          covariance(r, c) = excess * inverse(at + r, at + c) * scales(at + r) * scales(at + c);
       const Matrix6 motion = inverted ? motion_of_inverse(pose) : Matrix6(Matrix6::Identity());
       const Matrix6 carried = motion * covariance * motion.transpose();
       Vector6 std;
@@ -592,7 +597,7 @@ VERNIER_IMPL CameraReport CameraRun::run() {
   const CameraFreedom free = choose(all, &out.blocks);
   const Fit best = fit(all, free);
   out.ambiguous = best.ambiguous;
-  out.pixel_sigma = best.problem.pixel_sigma;
+  out.pixel_sigma = best.problem.scatter().pixels;
   report_unknowns(best.problem, out);
   report_images(best.problem, out);
   if (options_.left_out) report_left_out(free, out);
@@ -637,6 +642,11 @@ VERNIER_IMPL std::string CameraReport::summary() const {
   if (left_out_mean > 0)
     out += ", " + fixed_digits(left_out_mean * 1e3, 3) + " mm at left-out images (largest " +
            fixed_digits(left_out_max * 1e3, 2) + " mm)" + (choices_repeated ? ", all decisions made without them" : "");
+  out += "\n";
+  out += "Corners scatter by " + fixed_digits(pixel_sigma, 3) + " px within an image";
+  if (pose_excess > 1.2)
+    out += "; images scatter more, by errors of the arm: standard deviations are " + fixed_digits(pose_excess, 1) +
+           " times those of pixels alone";
   out += "\n";
   if (ambiguous > 0)
     out += message(counted(ambiguous, "view", "views"),

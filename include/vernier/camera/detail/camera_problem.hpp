@@ -106,6 +106,14 @@ class CameraProblem {
   VERNIER_API IterationEnd solve(int max_iterations = 60);
   /// Inverse of the normal equations with priors: the covariance of the unknowns in steps, for a unit of noise.
   VERNIER_API MatrixX covariance() const;
+  /// How images scatter about the model.
+  struct Scatter {
+    double pixels = 0;  ///< standard deviation of a coordinate about the pose that its image shows best [px]
+    double poses =
+        1;  ///< variance of these poses about the arm, in multiples of what `pixel_sigma` explains; at least 1
+  };
+  /// At the present values.
+  VERNIER_API Scatter scatter() const;
   /// All weights one.
   VERNIER_API void reset_weights();
   /// Present weight of a corner of a view.

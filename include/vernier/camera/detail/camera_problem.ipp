@@ -464,6 +464,26 @@ VERNIER_IMPL IterationEnd CameraProblem::solve(int max_iterations) {
   return minimise({linearise, step, keep, restore}, {max_iterations, 1e-7, 1e-10});
 }
 
+VERNIER_IMPL CameraProblem::Scatter CameraProblem::scatter() const {
+  const std::vector<Isometry3> modelled = poses();
+  double of_poses = 0, all = 0;
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    const MatrixX rows = view_rows(v, modelled[v]);
+    if (rows.rows() == 0) continue;
+    all += rows.col(rows.cols() - 1).squaredNorm();
+    const MatrixX reduced = reduced_rows(rows);
+    for (Index r = 0; r < 6; ++r) of_poses += reduced(r, reduced.cols() - 1) * reduced(r, reduced.cols() - 1);
+  }
+  const auto n = static_cast<double>(views_.size());
+  const auto of_cameras = static_cast<double>(free_intrinsics().size() * state.cameras.size() + free_shape().size());
+  const double of_frames = static_cast<double>(unknowns()) - of_cameras;
+  const double spare = (std::max)(1.0, static_cast<double>(values()) - 6 * n - of_cameras);
+  Scatter out;
+  out.pixels = pixel_sigma * std::sqrt((std::max)(0.0, all - of_poses) / spare);
+  out.poses = (std::max)(1.0, of_poses / (std::max)(1.5 * n, 6 * n - of_frames));
+  return out;
+}
+
 VERNIER_IMPL MatrixX CameraProblem::covariance() const {
   const auto [precisions, steps] = prior_terms();
   const NormalEquations normal = normal_equations();

@@ -608,6 +608,13 @@ VERNIER_IMPL CameraReport CameraRun::run() {
   out.pixel_sigma = best.problem.scatter().pixels;
   report_unknowns(best.problem, out);
   report_images(best.problem, out);
+  std::vector<double> of_images;
+  for (const ImageError& image : out.images) of_images.push_back(image.board_mean);
+  constexpr double implausible = 5e-3;  // [m]; more than any arm leaves once it is fitted
+  if (const double median = median_norm_of(std::move(of_images)); !(median < implausible))
+    throw CalibrationFailure(message(
+        views_.file, ": the images do not agree with the poses of the arm: the best fit is off by ",
+        fixed_digits(median * 1e3, 1), " mm on the board; wrong rows, another --camera-mount, board or robot?"));
   if (options_.left_out) report_left_out(free, out);
   return out;
 }

@@ -612,9 +612,11 @@ VERNIER_IMPL CameraReport CameraRun::run() {
   for (const ImageError& image : out.images) of_images.push_back(image.board_mean);
   constexpr double implausible = 5e-3;  // [m]; more than any arm leaves once it is fitted
   if (const double median = median_norm_of(std::move(of_images)); !(median < implausible))
-    throw CalibrationFailure(message(
-        views_.file, ": the images do not agree with the poses of the arm: the best fit is off by ",
-        fixed_digits(median * 1e3, 1), " mm on the board; wrong rows, another --camera-mount, board or robot?"));
+    throw CalibrationFailure(message(views_.file, ": the images do not agree with the poses of the arm: the best fit ",
+                                     std::isfinite(median)
+                                         ? "is off by " + fixed_digits(median * 1e3, 1) + " mm on the board"
+                                         : std::string("has the board out of sight"),
+                                     "; wrong rows, another --camera-mount, board or robot?"));
   if (options_.left_out) report_left_out(free, out);
   return out;
 }

@@ -93,7 +93,7 @@ struct CameraReport {
   Index ambiguous = 0;            ///< number of views whose better fitting pose was the wrong one of two
   Index downweighted = 0;         ///< number of corners that count less than half
   double pixel_sigma = 0;         ///< standard deviation of a corner about the pose that its image shows best [px]
-  double pose_excess = 1;         ///< factor of all standard deviations: images scatter more than their pixels explain
+  double pose_excess = 1;         ///< scatter of the images' poses about the arm, in multiples of what pixels explain
   double mean = 0;                ///< distance on the board, mean of all corners [m]
   double left_out_mean = 0;       ///< the same of left-out images; 0 where none were left out
   double left_out_max = 0;        ///< largest one

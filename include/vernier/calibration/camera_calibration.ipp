@@ -534,10 +534,18 @@ VERNIER_IMPL void CameraRun::report_unknowns(const CameraProblem& problem, Camer
   const MatrixX inverse = problem.covariance();
   const bool known = inverse.size() > 0;
   const VectorX scales = problem.scales();
-  // errors of the arm are common to the corners of an image
-  const double excess = problem.scatter().poses;
-  const auto variance = [&](Index k) { return known ? excess * inverse(k, k) * scales(k) * scales(k) : 0; };
-  out.pose_excess = std::sqrt(excess);
+  // errors of the arm are common to the corners of an image: the larger of what pixels and what images say
+  const MatrixX by_images = problem.jackknife();
+  const auto larger = [&](Index first, Index count) {
+    double of_pixels = 0, of_images = 0;
+    for (Index k = first; k < first + count && by_images.size() > 0 && known; ++k) {
+      of_pixels += inverse(k, k);
+      of_images += by_images(k, k);
+    }
+    return of_images > of_pixels ? &by_images : &inverse;
+  };
+  const auto variance = [&](Index k) { return known ? (*larger(k, 1))(k, k) * scales(k) * scales(k) : 0; };
+  out.pose_excess = std::sqrt(problem.scatter().poses);
   Index at = 0;
   if (problem.free.arm) {
     const VectorX now = problem.state.arm->parameters();
@@ -554,9 +562,9 @@ VERNIER_IMPL void CameraRun::report_unknowns(const CameraProblem& problem, Camer
                           std::vector<Vector6>& stds) {
     for (const Isometry3& pose : poses) {
       Matrix6 covariance = Matrix6::Zero();
+      const MatrixX& from = *larger(at, 6);
       for (Index r = 0; r < 6 && known; ++r)
-        for (Index c = 0; c < 6; ++c)
-          covariance(r, c) = excess * inverse(at + r, at + c) * scales(at + r) * scales(at + c);
+        for (Index c = 0; c < 6; ++c) covariance(r, c) = from(at + r, at + c) * scales(at + r) * scales(at + c);
       const Matrix6 motion = inverted ? motion_of_inverse(pose) : Matrix6(Matrix6::Identity());
       const Matrix6 carried = motion * covariance * motion.transpose();
       Vector6 std;
@@ -600,6 +608,15 @@ VERNIER_IMPL CameraReport CameraRun::run() {
   out.pixel_sigma = best.problem.scatter().pixels;
   report_unknowns(best.problem, out);
   report_images(best.problem, out);
+  std::vector<double> of_images;
+  for (const ImageError& image : out.images) of_images.push_back(image.board_mean);
+  constexpr double implausible = 5e-3;  // [m]; more than any arm leaves once it is fitted
+  if (const double median = median_norm_of(std::move(of_images)); !(median < implausible))
+    throw CalibrationFailure(message(views_.file, ": the images do not agree with the poses of the arm: the best fit ",
+                                     std::isfinite(median)
+                                         ? "is off by " + fixed_digits(median * 1e3, 1) + " mm on the board"
+                                         : std::string("has the board out of sight"),
+                                     "; wrong rows, another --camera-mount, board or robot?"));
   if (options_.left_out) report_left_out(free, out);
   return out;
 }
@@ -645,8 +662,7 @@ VERNIER_IMPL std::string CameraReport::summary() const {
   out += "\n";
   out += "Corners scatter by " + fixed_digits(pixel_sigma, 3) + " px within an image";
   if (pose_excess > 1.2)
-    out += "; images scatter more, by errors of the arm: standard deviations are " + fixed_digits(pose_excess, 1) +
-           " times those of pixels alone";
+    out += "; images scatter more, by errors of the arm, and standard deviations follow the images";
   out += "\n";
   if (ambiguous > 0)
     out += message(counted(ambiguous, "view", "views"),

@@ -60,7 +60,8 @@ VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows&
 }  // namespace detail
 
 /// Measured poses from a CSV file: columns q1_rad .. qN_rad (or _deg, _mrad; _mm, _m or _um for prismatic joints),
-/// x_mm, y_mm, z_mm (or _m, _um), optionally rx_rad, ry_rad, rz_rad (rotation vector, or _deg, _mrad). Any column
+/// x_mm, y_mm, z_mm (or _m, _um), optionally rx_rad, ry_rad, rz_rad (rotation vector, or _deg, _mrad), or a
+/// quaternion qw, qx, qy, qz, or a rotation matrix r11, r12 .. r33. Any column
 /// order; other columns are not read, and `format.remark` is told their names; without it, a name like
 /// `X_mm` or `time_min` is refused. Accepted are blank lines, lines that end
 /// with CRLF or CR, a byte-order mark, and quotation marks around a cell. A column that is there twice, or in two

@@ -49,8 +49,8 @@ struct Plausibility {
 /// - `plausibility()`: see `Plausibility`
 ///
 /// Optional: `with(SensorModel)` is the sensor with the accuracy that a user states for its kind; `positions()` are
-/// measured positions, n x 3, if it measures these; `covariances()` are n covariances of the rows in place of `sigma()`,
-/// or none.
+/// measured positions, n x 3, if it measures these; `covariances()` are n covariances of the rows in place of
+/// `sigma()`, or none.
 ///
 /// `testing::sensor_violations` checks what types cannot express.
 template <class S>

@@ -114,6 +114,9 @@ class CameraProblem {
   };
   /// At the present values.
   VERNIER_API Scatter scatter() const;
+  /// Covariance of the unknowns in steps by the jackknife over images: errors that the corners of an image share count.
+  /// @cite Efron 1982
+  VERNIER_API MatrixX jackknife() const;
   /// All weights one.
   VERNIER_API void reset_weights();
   /// Present weight of a corner of a view.
@@ -131,6 +134,8 @@ class CameraProblem {
   VERNIER_API Isometry3 pose_of(const PlacedView& view) const;
 
  private:
+  /// Every view reduced to blocks of six rows, as many each.
+  VERNIER_API std::vector<RowBlock> reduced_blocks() const;
   /// Changes the unknowns.
   VERNIER_API void move(const VectorX& steps);
   /// Columns of P by the chain, the bases and the tools, in steps, for each view.

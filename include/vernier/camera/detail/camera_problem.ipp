@@ -290,7 +290,7 @@ VERNIER_LOCAL MatrixX reduced_rows(const MatrixX& rows) {
   return triangular_factor(padded);
 }
 
-VERNIER_IMPL NormalEquations CameraProblem::normal_equations() const {
+VERNIER_IMPL std::vector<RowBlock> CameraProblem::reduced_blocks() const {
   std::vector<Isometry3> poses;
   const std::vector<MatrixX> motion = motion_columns(poses);
   const Index of_motion = motion.empty() ? 0 : motion.front().cols();
@@ -315,9 +315,14 @@ VERNIER_IMPL NormalEquations CameraProblem::normal_equations() const {
       block.unwhiten.setIdentity();
     }
   }
+  return all;
+}
+
+VERNIER_IMPL NormalEquations CameraProblem::normal_equations() const {
+  const std::vector<RowBlock> all = reduced_blocks();
   const auto rows = [&](Index first, Index count, RowBlock* out) { std::copy_n(all.begin() + first, count, out); };
   const auto n = static_cast<Index>(all.size());
-  return NormalEquations(BlockSystem{n, n, unknown, {}, rows});
+  return NormalEquations(BlockSystem{n, n, unknowns(), {}, rows});
 }
 
 VERNIER_IMPL MatrixX CameraProblem::dense_rows() const {
@@ -482,6 +487,31 @@ VERNIER_IMPL CameraProblem::Scatter CameraProblem::scatter() const {
   out.pixels = pixel_sigma * std::sqrt((std::max)(0.0, all - of_poses) / spare);
   out.poses = (std::max)(1.0, of_poses / (std::max)(1.5 * n, 6 * n - of_frames));
   return out;
+}
+
+VERNIER_IMPL MatrixX CameraProblem::jackknife() const {
+  const std::vector<RowBlock> all = reduced_blocks();
+  const VectorX precisions = prior_terms().first;
+  const Index unknown = unknowns();
+  std::vector<MatrixX> squares(views_.size(), MatrixX::Zero(unknown, unknown));
+  std::vector<VectorX> gradients(views_.size(), VectorX::Zero(unknown));
+  MatrixX sum = MatrixX::Zero(unknown, unknown);
+  for (Index k = 0; k < unknown; ++k) sum(k, k) = precisions(k);
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    const std::size_t v = b / (all.size() / views_.size());
+    add_transposed_product(squares[v], all[b].dense, all[b].dense);
+    gradients[v] += transposed_product(all[b].dense, all[b].residual);
+    add_transposed_product(sum, all[b].dense, all[b].dense);
+  }
+  MatrixX out = MatrixX::Zero(unknown, unknown);
+  for (std::size_t v = 0; v < views_.size(); ++v) {
+    MatrixX without = sum - squares[v], step = gradients[v];
+    if (!cholesky(without)) return MatrixX();
+    solve_cholesky(without, step);
+    add_transposed_product(out, MatrixX(step.transpose()), MatrixX(step.transpose()));
+  }
+  const auto n = static_cast<double>(views_.size());
+  return (n - 1) / n * out;
 }
 
 VERNIER_IMPL MatrixX CameraProblem::covariance() const {

@@ -224,7 +224,7 @@ class ErrorModelFit {
   /// Estimates the direction of gravity: the best of the axes and of the given direction, then Newton's steps of the
   /// two angles about it. Torques are linear in the direction; the products of compliance follow it at each trial.
   /// @param terms those of the problem; they get the direction
-  /// @return      its standard deviation [rad], of the weaker angle
+  /// @return      its standard deviation [rad], of the weaker angle; 0 where the measurements do not tell it
   VERNIER_LOCAL double estimate_down(JointTerms& terms) {
     Vector3 down = options_.down;
     double least = cost_of(terms, down);
@@ -281,7 +281,12 @@ class ErrorModelFit {
     model_.solve();
     const double variance =
         problem_.stacked(false).residuals.squaredNorm() / static_cast<double>(problem_.measured_values());
-    return weaker * std::sqrt((std::max)(1.0, variance));
+    const double std = weaker * std::sqrt((std::max)(1.0, variance));
+    constexpr double nothing = 0.3;  // [rad]; compliance so small says nothing of a direction, which stays as given
+    if (std < nothing) return std;
+    (void)cost_of(terms, options_.down);
+    model_.solve();
+    return 0;
   }
 
   /// Adds how prismatic joints depart from a straight motion, over the range in which they were measured.

@@ -68,6 +68,9 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::remarks() const {
   constexpr double largest_condition = 1e6;
   std::vector<std::string> out;
   if (!converged) out.push_back("The fit of the joint errors stopped before it converged.");
+  if (payload && !payload->estimated)
+    out.push_back(message("Compliance to payload is unknown: all poses were measured at ", brief(payload->mean),
+                          " kg. Measure poses with another payload, too."));
   if (!identification.converged())
     out.push_back((identification.status == IdentifyStatus::underdetermined
                        ? "The geometry is underdetermined: "
@@ -407,12 +410,9 @@ VERNIER_IMPL std::vector<std::string> CalibrationReport::details() const {
     out.push_back(message("Gravity was found along ", detail::brief(down->direction(0)), ", ",
                           detail::brief(down->direction(1)), ", ", detail::brief(down->direction(2)),
                           " of the arm's base frame, to ", detail::brief(down->std * 1e3), " mrad."));
-  if (payload)
-    out.push_back(payload->estimated
-                      ? message("Where no payload is given, the model is that of ", detail::brief(payload->mean),
-                                " kg, the mean of the measurements.")
-                      : message("Compliance to payload is unknown: all poses were measured at ",
-                                detail::brief(payload->mean), " kg. Measure poses with another payload, too."));
+  if (payload && payload->estimated)
+    out.push_back(message("Where no payload is given, the model is that of ", detail::brief(payload->mean),
+                          " kg, the mean of the measurements."));
   for (std::size_t s = 0; s < drift.size(); ++s)
     if (!drift[s].empty())
       out.push_back(detail::describe_drift(drift[s], joints, drift.size() > 1 ? message(" of station ", s + 1) : ""));

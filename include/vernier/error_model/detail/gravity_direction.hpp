@@ -14,7 +14,7 @@ namespace vernier::detail {
 /// @param terms   those of the problem, with gravity compliance; they get the direction
 /// @param nominal the chain whose torques gravity compliance needs
 /// @param start   the direction as stated, base frame of the chain; a unit vector
-/// @return        its standard deviation [rad], of the weaker angle
+/// @return        its standard deviation [rad], of the weaker angle; 0 where the measurements do not tell it
 VERNIER_API double estimate_down(ModelSelection& model, JointTerms& terms, const ChainTable& nominal,
                                  const Vector3& start);
 

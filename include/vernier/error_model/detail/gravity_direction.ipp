@@ -83,7 +83,12 @@ VERNIER_IMPL double estimate_down(ModelSelection& model, JointTerms& terms, cons
   model.solve();
   const double variance =
       problem.stacked(false).residuals.squaredNorm() / static_cast<double>(problem.measured_values());
-  return weaker * std::sqrt((std::max)(1.0, variance));
+  const double std = weaker * std::sqrt((std::max)(1.0, variance));
+  constexpr double nothing = 0.3;  // [rad]; compliance so small says nothing of a direction, which stays as given
+  if (std < nothing) return std;
+  (void)cost_of(model, terms, nominal, start);
+  model.solve();
+  return 0;
 }
 
 }  // namespace vernier::detail

@@ -3,7 +3,6 @@
 
 #include "vernier/camera/hand_eye.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,6 +24,14 @@ VERNIER_LOCAL Matrix3 rotation_of(const VectorX& columns) {
     for (Index r = 0; r < 3; ++r) out(r, c) = columns(3 * c + r);
   if (out.determinant() < 0) out = -out;
   return nearest_rotation(out);
+}
+
+/// The shortest solution of least squares, also where the rows do not determine one.
+VERNIER_LOCAL VectorX shortest_solution(const MatrixX& rows, const VectorX& right) {
+  const ThinSvd svd = thin_svd(rows);
+  VectorX along = transposed_product(svd.u, right);
+  for (Index k = 0; k < along.size(); ++k) along(k) = svd.s(k) > 1e-12 * svd.s(0) ? along(k) / svd.s(k) : 0;
+  return product(svd.v, along);
 }
 
 /// Angle and distance by which a pose is not where frames say it is.
@@ -80,9 +87,9 @@ VERNIER_IMPL HandEye hand_eye(std::span<const Isometry3> flanges, std::span<cons
       right(row) = root * rest(r);
     }
   }
-  const VectorX shifts = rows.completeOrthogonalDecomposition().solve(right);
-  out.base = rigid_motion(base, shifts.head<3>());
-  out.tool = rigid_motion(tool, shifts.tail<3>());
+  const VectorX shifts = detail::shortest_solution(rows, right);
+  out.base = rigid_motion(base, Vector3(shifts(0), shifts(1), shifts(2)));
+  out.tool = rigid_motion(tool, Vector3(shifts(3), shifts(4), shifts(5)));
   double squared_turn = 0, squared_shift = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const auto [turn, shift] = detail::missed_by(out, flanges[i], seen[i]);

@@ -3,8 +3,6 @@
 
 #include "vernier/camera/planar_pose.hpp"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -67,9 +65,12 @@ VERNIER_LOCAL BoardPose refined(const Camera& camera, const Board& board, std::s
   Vector6 gradient;
   double cost = linearise(pose, normal, gradient), damping = 1e-9;
   for (int iteration = 0; iteration < 50 && cost < infinity; ++iteration) {
-    Matrix6 damped = normal;
-    damped.diagonal() *= 1 + damping;
-    const Vector6 step = -damped.ldlt().solve(gradient);
+    MatrixX damped = normal;
+    for (Index k = 0; k < 6; ++k) damped(k, k) *= 1 + damping;
+    VectorX solution = -gradient;
+    if (!cholesky(damped)) break;
+    solve_cholesky(damped, solution);
+    const Vector6 step = solution;
     const Isometry3 next = shifted(pose, step);
     Matrix6 next_normal;
     Vector6 next_gradient;
@@ -135,7 +136,8 @@ VERNIER_IMPL std::array<BoardPose, 2> board_poses(const Camera& camera, const Bo
   if (!detail::all_finite(h)) return out;
   // infinitesimal plane-based pose: the derivative of the homography at the middle has two decompositions
   const double p = h(0, 2), q = h(1, 2);
-  const Matrix3 to_ray = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), Vector3(p, q, 1)).toRotationMatrix();
+  const double aside = std::hypot(p, q), angle = std::atan2(aside, 1);
+  const Matrix3 to_ray = exp_so3(aside > 0 ? Vector3(-q * angle / aside, p * angle / aside, 0) : Vector3(0, 0, 0));
   Eigen::Matrix2d jacobian, across;
   for (Index c = 0; c < 2; ++c) {
     jacobian(0, c) = h(0, c) - h(2, c) * p;
@@ -143,17 +145,20 @@ VERNIER_IMPL std::array<BoardPose, 2> board_poses(const Camera& camera, const Bo
     across(0, c) = to_ray(0, c) - p * to_ray(2, c);
     across(1, c) = to_ray(1, c) - q * to_ray(2, c);
   }
-  const Eigen::Matrix2d a = across.inverse() * jacobian;
-  const double a00 = a(0, 0), a01 = a(0, 1), a10 = a(1, 0), a11 = a(1, 1);
+  const double determinant = across(0, 0) * across(1, 1) - across(0, 1) * across(1, 0);
+  const auto solved_for = [&](Index r, Index c) {  // across^-1 jacobian
+    return (across(1 - r, 1 - r) * jacobian(r, c) - across(r, 1 - r) * jacobian(1 - r, c)) / determinant;
+  };
+  const double a00 = solved_for(0, 0), a01 = solved_for(0, 1), a10 = solved_for(1, 0), a11 = solved_for(1, 1);
   const double row0 = a00 * a00 + a01 * a01, row1 = a10 * a10 + a11 * a11, product = a00 * a10 + a01 * a11;
   const double scale = std::sqrt((row0 + row1 + std::hypot(row0 - row1, 2 * product)) / 2);
   if (!(scale > 0)) return out;
-  const Eigen::Matrix2d upper = a / scale;
-  const Eigen::Matrix2d rest = Eigen::Matrix2d::Identity() - upper.transpose() * upper;
-  double c0 = std::sqrt((std::max)(0.0, rest(0, 0))), c1 = std::sqrt((std::max)(0.0, rest(1, 1)));
-  if (rest(0, 1) < 0) c1 = -c1;
+  const double u00 = a00 / scale, u01 = a01 / scale, u10 = a10 / scale, u11 = a11 / scale;
+  double c0 = std::sqrt((std::max)(0.0, 1 - u00 * u00 - u10 * u10)),
+         c1 = std::sqrt((std::max)(0.0, 1 - u01 * u01 - u11 * u11));
+  if (u00 * u01 + u10 * u11 > 0) c1 = -c1;
   for (const double sign : {1.0, -1.0}) {
-    const Vector3 x(upper(0, 0), upper(1, 0), sign * c0), y(upper(0, 1), upper(1, 1), sign * c1);
+    const Vector3 x(u00, u10, sign * c0), y(u01, u11, sign * c1);
     Matrix3 inner;
     inner.col(0) = x;
     inner.col(1) = y;
@@ -170,7 +175,8 @@ VERNIER_IMPL std::array<BoardPose, 2> board_poses(const Camera& camera, const Bo
         right(row + axis) = rays[i](axis) * turned(2) - turned(axis);
       }
     }
-    const Vector3 at = rows.householderQr().solve(right);
+    const MatrixX solved = detail::solve_by_qr(rows, right).solution;
+    const Vector3 at(solved(0, 0), solved(1, 0), solved(2, 0));
     const BoardPose pose =
         detail::refined(camera, board, corners, pixels, rigid_motion(rotation, at - rotation * middle));
     out[sign > 0 ? 0 : 1] = pose;

@@ -282,6 +282,18 @@ VERNIER_IMPL MatrixX CameraProblem::view_rows(std::size_t number, const Isometry
   return out;
 }
 
+/// Inverse of an upper triangle.
+VERNIER_LOCAL Matrix6 inverse_of_upper(const Matrix6& triangle) {
+  Matrix6 out = Matrix6::Zero();
+  for (Index c = 0; c < 6; ++c)
+    for (Index r = c; r >= 0; --r) {
+      double sum = r == c ? 1 : 0;
+      for (Index k = r + 1; k <= c; ++k) sum -= triangle(r, k) * out(k, c);
+      out(r, c) = sum / triangle(r, r);
+    }
+  return out;
+}
+
 /// R of the QR decomposition of rows, of which there may be few.
 VERNIER_LOCAL MatrixX reduced_rows(const MatrixX& rows) {
   if (rows.rows() >= rows.cols()) return triangular_factor(rows);
@@ -308,7 +320,7 @@ VERNIER_IMPL std::vector<RowBlock> CameraProblem::reduced_blocks() const {
       RowBlock& block = all[v * static_cast<std::size_t>(blocks) + static_cast<std::size_t>(b)];
       const Rows6 six = reduced.middleRows<6>(6 * b);
       block.dense = Rows6::Zero(6, unknown);
-      if (b == 0) block.dense.leftCols(of_motion) = six.leftCols<6>() * motion[v];
+      if (b == 0) block.dense.leftCols(of_motion) = matrix_product(six.leftCols<6>(), motion[v]);
       block.dense.middleCols(camera, of_camera) = six.middleCols(6, of_camera);
       block.dense.middleCols(shape, of_shape) = six.middleCols(6 + of_camera, of_shape);
       block.residual = six.col(width - 1);
@@ -337,7 +349,7 @@ VERNIER_IMPL MatrixX CameraProblem::dense_rows() const {
     const MatrixX rows = view_rows(v, poses[v]);
     const Index camera = of_motion + of_camera * views_[v].view->camera;
     const Index shape = of_motion + of_camera * static_cast<Index>(state.cameras.size());
-    out.block(at, 0, rows.rows(), of_motion) = rows.leftCols<6>() * motion[v];
+    out.block(at, 0, rows.rows(), of_motion) = matrix_product(rows.leftCols<6>(), motion[v]);
     out.block(at, camera, rows.rows(), of_camera) = rows.middleCols(6, of_camera);
     out.block(at, shape, rows.rows(), of_shape) = rows.middleCols(6 + of_camera, of_shape);
     out.block(at, out.cols() - 1, rows.rows(), 1) = rows.rightCols<1>();
@@ -374,13 +386,13 @@ VERNIER_IMPL std::optional<std::pair<Isometry3, Matrix6>> CameraProblem::seen_po
     const Vector6 right = reduced.col(reduced.cols() - 1).head<6>();
     const Vector6 diagonal = triangle.diagonal().cwiseAbs();
     if (!(diagonal.minCoeff() > 1e-9 * diagonal.maxCoeff())) return std::nullopt;
-    const Vector6 by = -triangle.triangularView<Eigen::Upper>().solve(right);
+    const Vector6 by = -(inverse_of_upper(triangle) * right);
     step = by.norm();
     if (!(step < 1)) return std::nullopt;
     pose = shifted(pose, by);
   }
   if (!(step < 1e-8)) return std::nullopt;
-  const Matrix6 inverse = triangle.triangularView<Eigen::Upper>().solve(Matrix6(Matrix6::Identity()));
+  const Matrix6 inverse = inverse_of_upper(triangle);
   return std::pair{pose, Matrix6(inverse * inverse.transpose())};
 }
 
@@ -561,8 +573,8 @@ VERNIER_IMPL bool refine_cameras(CameraProblem& problem, std::vector<Isometry3>&
       const MatrixX rest = reduced.back().block(6, 6, reduced.back().rows() - 6, of_camera);
       const VectorX right = reduced.back().col(reduced.back().cols() - 1).tail(reduced.back().rows() - 6);
       const Index at = of_camera * problem.views()[v].view->camera;
-      normal.block(at, at, of_camera, of_camera) += rest.transpose() * rest;
-      gradient.segment(at, of_camera) += rest.transpose() * right;
+      normal.block(at, at, of_camera, of_camera) += transposed_matrix_product(rest, rest);
+      gradient.segment(at, of_camera) += transposed_product(rest, right);
     }
     normal.diagonal() *= 1 + damping;
     std::vector<Camera> cameras = problem.state.cameras;
@@ -577,14 +589,19 @@ VERNIER_IMPL bool refine_cameras(CameraProblem& problem, std::vector<Isometry3>&
         }
     }
     VectorX step = VectorX::Zero(unknown);
-    if (unknown > 0) step = -normal.ldlt().solve(gradient);
+    if (unknown > 0) {
+      step = -gradient;
+      if (!cholesky(normal)) return false;
+      solve_cholesky(normal, step);
+    }
     std::vector<Isometry3> next = poses;
     for (std::size_t v = 0; v < views; ++v) {
       const MatrixX& r = reduced[v];
       VectorX right = r.col(r.cols() - 1).head<6>();
       if (of_camera > 0)
-        right += r.block(0, 6, 6, of_camera) * step.segment(of_camera * problem.views()[v].view->camera, of_camera);
-      const Vector6 by = -r.topLeftCorner<6, 6>().triangularView<Eigen::Upper>().solve(right);
+        right +=
+            product(r.block(0, 6, 6, of_camera), step.segment(of_camera * problem.views()[v].view->camera, of_camera));
+      const Vector6 by = -(inverse_of_upper(r.topLeftCorner<6, 6>()) * Vector6(right));
       next[v] = frame(shifted(frame(poses[v]), by));
     }
     const std::vector<Camera> before = problem.state.cameras;

@@ -80,6 +80,8 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
   EXPECT_EQ(keys(c.json), (std::vector<std::string>{"robot",
                                                     "train_rows",
                                                     "test_rows",
+                                                    "independent_test_poses",
+                                                    "left_out_blocks_mm",
                                                     "outliers_kept",
                                                     "outliers",
                                                     "stages",

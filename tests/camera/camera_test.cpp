@@ -41,7 +41,7 @@ TEST(Projection, HasTheDerivativesOfItsDefinition) {
     const vn::Vector3 point(rng.uniform(-0.5, 0.5), rng.uniform(-0.5, 0.5), rng.uniform(0.8, 2));
     const vn::ProjectedPoint seen = vn::project(camera, point);
     const auto intrinsics = vernier_test::numbers_of(camera);
-    const std::array<long double, 3> at{point.x(), point.y(), point.z()};
+    const std::array<long double, 3> at = vernier_test::long_numbers(point);
     const auto exact = vernier_test::pixel_of(intrinsics, at);
     const auto slope = [&](auto moved, std::size_t k, vn::Index row) {
       auto up = moved, down = moved;

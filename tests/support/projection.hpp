@@ -24,12 +24,21 @@ inline std::array<long double, 2> pixel_of(const std::array<long double, 9>& c,
 }
 
 inline std::array<long double, 9> numbers_of(const vernier::Camera& camera) {
-  return {camera.fx, camera.fy, camera.cx, camera.cy, camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
+  const double values[] = {camera.fx, camera.fy, camera.cx, camera.cy, camera.k1,
+                           camera.k2, camera.p1, camera.p2, camera.k3};
+  std::array<long double, 9> out{};
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] = static_cast<long double>(values[k]);
+  return out;
+}
+
+/// A point in more digits.
+inline std::array<long double, 3> long_numbers(const vernier::Vector3& point) {
+  return {static_cast<long double>(point(0)), static_cast<long double>(point(1)), static_cast<long double>(point(2))};
 }
 
 /// The pixel at which a camera sees a point of its frame [m].
 inline vernier::Vector2 seen_at(const vernier::Camera& camera, const vernier::Vector3& point) {
-  const auto [u, v] = pixel_of(numbers_of(camera), {point.x(), point.y(), point.z()});
+  const auto [u, v] = pixel_of(numbers_of(camera), long_numbers(point));
   return {static_cast<double>(u), static_cast<double>(v)};
 }
 

@@ -8,6 +8,7 @@
 
 #include "simulated_views.hpp"
 #include "vernier/calibration/camera_calibration.hpp"
+#include "vernier/camera/detail/camera_problem.hpp"
 #include "vernier/kinematics/robots.hpp"
 
 namespace vn = vernier;

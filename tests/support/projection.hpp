@@ -70,9 +70,11 @@ inline vernier::Camera machine_camera() {
 
 /// A pose of a board before the camera, tilted by up to 0.7 rad.
 inline vernier::Isometry3 board_before_camera(const vernier::Board& board, double distance, vernier::Rng& rng) {
-  const vernier::Vector3 turn(rng.uniform(-0.7, 0.7), rng.uniform(-0.7, 0.7), rng.uniform(-1.5, 1.5));
+  const double about_z = rng.uniform(-1.5, 1.5), about_y = rng.uniform(-0.7, 0.7), about_x = rng.uniform(-0.7, 0.7);
+  const vernier::Vector3 turn(about_x, about_y, about_z);
   const vernier::Matrix3 rotation = vernier::exp_so3(turn);
-  const vernier::Vector3 middle(rng.uniform(-0.1, 0.1), rng.uniform(-0.1, 0.1), distance * rng.uniform(0.9, 1.2));
+  const double z = distance * rng.uniform(0.9, 1.2), y = rng.uniform(-0.1, 0.1), x = rng.uniform(-0.1, 0.1);
+  const vernier::Vector3 middle(x, y, z);
   return vernier::rigid_motion(rotation, middle - rotation * board.middle());
 }
 

@@ -87,7 +87,8 @@ SimulatedViews simulated_views(const Chain& actual, const vernier::JointLimits<C
     int most = -1;
     for (int trial = 0; trial < 12; ++trial) {
       const Isometry3 end = actual.pose(drawn()) * out.tool;
-      const vernier::Matrix3 turn = vernier::exp_so3(Vector3(rng.uniform(-0.3, 0.3), rng.uniform(-0.3, 0.3), 0.2));
+      const double about_y = rng.uniform(-0.3, 0.3), about_x = rng.uniform(-0.3, 0.3);
+      const vernier::Matrix3 turn = vernier::exp_so3(Vector3(about_x, about_y, 0.2));
       const Isometry3 camera_T_board = vernier::rigid_motion(turn, Vector3(0, 0, 0.6) - turn * setup.board.middle());
       // on the flange: base_T_board is where the camera sees it; else the camera is where it sees the board
       const Isometry3 candidate = setup.on_flange ? (end * camera_T_board).inverse() : camera_T_board * end.inverse();

@@ -14,7 +14,8 @@ namespace vernier {
 /// row k / (columns - 1); its place is (column + 1, row + 1) squares from the board's origin, which is a corner of the
 /// print.
 struct Board {
-  Index rows = 0, columns = 0;  ///< number of squares
+  Index rows = 0;               ///< number of squares from top to bottom
+  Index columns = 0;            ///< number of squares from left to right
   double square = 0;            ///< side of a square [m], as measured or, if it was not, as printed
   double scale_sigma = 3e-3;    ///< standard deviation of all lengths, as a share; 0.3 % for a print not measured
   double marker = 0;            ///< side of a marker [m]; 0: a chessboard

@@ -22,12 +22,14 @@ struct MarkerPattern {
 
 /// A marker by its number.
 /// @param dictionary DICT_4X4_50, _100 or _250, or DICT_5X5_50, _100 or _250
+/// @param number     of the marker, from 0
 /// @throws std::invalid_argument for another dictionary, or a number that it has not
 VERNIER_API MarkerPattern marker_pattern(const std::string& dictionary, Index number);
 
 /// Whether a place on a board is printed black: squares, and the markers in white squares, which are numbered row by
 /// row.
-/// @param x,y from the corner of the print, x along the columns [m]
+/// @param board with its squares and markers
+/// @param x,y   from the corner of the print, x along the columns [m]
 VERNIER_API bool is_black(const Board& board, double x, double y);
 
 /// A board as SVG, in its true size with a white margin of one square.

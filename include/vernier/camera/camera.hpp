@@ -22,10 +22,17 @@ using Vector2 = Eigen::Vector2d;
 ///     u = fx (x c + 2 p1 x y + p2 (r2 + 2 x^2)) + cx,   v = fy (y c + p1 (r2 + 2 y^2) + 2 p2 x y) + cy
 /// @cite Brown 1971
 struct Camera {
-  double fx = 0, fy = 0;                          ///< focal lengths [px]
-  double cx = 0, cy = 0;                          ///< principal point [px]
-  double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;  ///< distortion: radial, tangential, radial of sixth order
-  Index width = 0, height = 0;                    ///< size of the images [px]; 0 where it is not known
+  double fx = 0;     ///< focal length along u [px]
+  double fy = 0;     ///< focal length along v [px]
+  double cx = 0;     ///< principal point, u [px]
+  double cy = 0;     ///< principal point, v [px]
+  double k1 = 0;     ///< radial distortion of second order
+  double k2 = 0;     ///< radial distortion of fourth order
+  double p1 = 0;     ///< tangential distortion along v
+  double p2 = 0;     ///< tangential distortion along u
+  double k3 = 0;     ///< radial distortion of sixth order
+  Index width = 0;   ///< of the images [px]; 0 where it is not known
+  Index height = 0;  ///< of the images [px]; 0 where it is not known
 
   /// Number of intrinsics.
   static constexpr Index num_parameters = 9;
@@ -48,7 +55,8 @@ struct ProjectedPoint {
 };
 
 /// The pixel at which a camera sees a point, and its exact derivatives.
-/// @param point in the camera's frame [m], in front of it: z > 0
+/// @param camera with intrinsics
+/// @param point  in the camera's frame [m], in front of it: z > 0
 VERNIER_API ProjectedPoint project(const Camera& camera, const Vector3& point);
 
 /// The point at depth one, (x, y, 1), that a camera sees at a pixel, by Newton's method.

@@ -18,11 +18,13 @@ namespace vernier {
 /// One board in one image of one camera.
 struct View {
   std::string image;              ///< its name
-  Index camera = 0, board = 0;    ///< numbers of the camera, and of the board's place
+  Index camera = 0;               ///< number of the camera
+  Index board = 0;                ///< number of the board's place
   std::vector<Index> corners{};   ///< numbers of the corners that were found
   std::vector<Vector2> pixels{};  ///< where each was found
   Index line = 0;                 ///< of its first corner in the file
-  Index width = 0, height = 0;    ///< size of the image; 0 where the file does not state it
+  Index width = 0;                ///< of the image [px]; 0 where the file does not state it
+  Index height = 0;               ///< of the image [px]; likewise
 };
 
 /// All images of a calibration.

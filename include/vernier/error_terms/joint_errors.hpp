@@ -38,8 +38,8 @@ struct JointTermBlock {
 struct JointTermTraits {
   /// Some parameters of a block: their key in model files, and their number; 0: all that follow.
   struct Parameter {
-    const char* key = nullptr;
-    int count = 0;
+    const char* key = nullptr;  ///< in model files; null: there is none
+    int count = 0;              ///< number of values; 0: all that follow
   };
   JointTermBlock::Kind kind;              ///< itself
   const char* key;                        ///< of the block in model files; also its name in C

@@ -54,8 +54,9 @@ class PayloadCompliance {
   VERNIER_API PayloadLoad load(const Payload& payload) const noexcept;
 
   /// Torques about the joints [N m], forces along prismatic ones [N].
-  /// @param q   joint values
-  /// @param out one value a joint
+  /// @param q    joint values
+  /// @param load weight and moment beyond the reference
+  /// @param out  one value a joint
   VERNIER_API void torques(const double* q, const PayloadLoad& load, double* out) const noexcept;
   /// Adds the joint errors under a load to `joints`, and their derivative with respect to the joint values to
   /// `derivative`, N x N by columns. Does not allocate.

@@ -5,6 +5,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/error_terms/payload_compliance.hpp"
+#include "vernier/kinematics/detail/chain_blocks.hpp"
 
 namespace vernier {
 

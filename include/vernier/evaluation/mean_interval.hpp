@@ -20,6 +20,7 @@ struct MeanInterval {
   /// @throws std::invalid_argument without errors
   VERNIER_API static MeanInterval of(const ConstVectorRef& errors);
   /// Of the means of some groups: errors of one group, such as readings of one pose, depend on each other.
+  /// @param errors of all rows
   /// @param groups the group of each error, from 0; none: each error is one
   /// @throws std::invalid_argument without errors, or for another number of groups
   VERNIER_API static MeanInterval of(const ConstVectorRef& errors, std::span<const Index> groups);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -88,7 +89,7 @@ Json to_json(const vn::CameraReport& report) {
                              {"mean_mm", image.board_mean * 1e3},
                              {"left_out_mean_mm", image.left_out_mean * 1e3},
                              {"distance_mm", image.distance * 1e3},
-                             {"tilt_deg", image.tilt * 180 / 3.14159265358979}});
+                             {"tilt_deg", image.tilt * 180 / std::numbers::pi}});
   for (const vn::CameraBlock& block : report.blocks)
     out["decisions"].push_back({{"unknowns", block.name},
                                 {"without_mm", block.without * 1e3},

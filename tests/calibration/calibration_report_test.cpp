@@ -198,8 +198,8 @@ TEST(CalibrationReport, TheVerdictHasSevenLinesAtMost) {
   ASSERT_EQ(said.size(), 7u) << joined(said);
   EXPECT_EQ(said[3],
             "Deployed, as left-out poses decide: joint-wise. Included: gravity compliance, functions of single joints. "
-            "Ruled out, as too small to matter: hysteresis by the direction of approach. Undecided, for which these "
-            "poses are too few: tilts of joint frames under gravity.");
+            "Ruled out, as too small to matter: hysteresis by the direction of approach. Undecided, since the poses "
+            "are too few: tilts of joint frames under gravity.");
   EXPECT_EQ(said[4],
             "The fit of the joint errors stopped before it converged. The fit of the geometry did not converge: 100 "
             "iterations. The geometry is poorly determined: its condition is 2.6e+06. 2 training rows are "

@@ -173,7 +173,7 @@ VERNIER_LOCAL std::string describe_choice(const CalibrationReport& report) {
   });
   list(". Found, but not deployed, because they predict left-out poses worse: ", answered(Answer::found));
   list(". Ruled out, as too small to matter: ", answered(Answer::ruled_out));
-  list(". Undecided, for which these poses are too few: ", answered(Answer::undecided));
+  list(". Undecided, since the poses are too few: ", answered(Answer::undecided));
   list(". Not tested, because time cannot be told apart: ", [](const BlockChoice& block) {
     return block.block == Block::temperature && block.existence.answer == Answer::untested;
   });

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "vernier/core/executor.hpp"
-#include "vernier/error_terms/joint_errors.hpp"
+#include "vernier/error_terms/joint_terms.hpp"
 #include "vernier/kinematics/joint_drive.hpp"
 
 namespace vernier {

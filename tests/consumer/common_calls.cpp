@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <vernier/compensation/correct_path.hpp>
 #include <vernier/io.hpp>
 #include <vernier/planning/plan_measurements.hpp>
+#include <vernier/registration/reregister.hpp>
 #include <vernier/robot_programs/correct_program.hpp>
 #include <vernier/urdf.hpp>
 #include <vernier/vernier.hpp>

@@ -522,17 +522,6 @@ Json measured_robot(const std::string& robot, const std::string& file) {
   return Json::parse(read_file(folder / "r.json")).at("stages");
 }
 
-TEST(CalibrateMeasured, Ur10) {
-  const Json stages = measured_robot("ur10", "ur10_random_poses.csv");
-  if (stages.is_null()) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";
-  EXPECT_NEAR(stages.at("frames").at("mean_mm"), 0.90, 0.03);
-  const double geometry = stages.at("geometry").at("mean_mm");
-  EXPECT_LE(geometry, 0.44);
-  EXPECT_LE(stages.at("geometry_pso_elm").at("mean_mm"), 1.02 * geometry);
-  EXPECT_LE(stages.at("jointwise").at("mean_mm"), 0.09);
-  EXPECT_LE(stages.at("jointwise").at("mean_mrad"), 0.25);
-}
-
 TEST(CalibrateMeasured, Ur5) {
   const Json stages = measured_robot("ur5", "ur5_grid.csv");
   if (stages.is_null()) GTEST_SKIP() << "VERNIER_DATA_DIR names no folder of measured poses";

@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Makes an industrial robot go where it is told: calibration and error compensation of serial arms.
+
+Joint values are those of the controller, in radians or metres, a row a configuration; lengths are in metres.
+
+    robot = vernier.Robot.load("abb_irb120")
+    data = vernier.Measurements.read("measured.csv", robot)
+    result = vernier.calibrate(robot, data, test=5)
+    print(result.verdict)
+    command = result.model.correct(q).command
+"""
+from ._vernier import (Correction, IkResult, Measurements, Model, Progress, Robot, __version__, calibrate, load)
+from .errors import CalibrationFailure, DataError
+from .results import Branches, CalibrationResult, CorrectedPath, Report, Verification
+
+__all__ = ["Branches", "CalibrationFailure", "CalibrationResult", "CorrectedPath", "Correction", "DataError",
+           "IkResult", "Measurements", "Model", "Progress", "Report", "Robot", "Verification", "__version__",
+           "calibrate", "load"]
+
+for _type in (Correction, IkResult, Measurements, Model, Progress, Robot):
+    _type.__module__ = __name__  # where users find them, and where pickle looks

@@ -131,3 +131,48 @@ class Verification:
 
     def __repr__(self) -> str:
         return f"<vernier.Verification: {self.verdict}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Plan:
+    """Poses to measure."""
+
+    joints: Array
+    """Chosen poses in the order of choice: the first ones alone are the plan of fewer [rad, m]."""
+    chosen: List[int]
+    """Their numbers among the candidates."""
+    visits: List[int]
+    """Rows of `joints` in the order of measuring; the first three register the sensor, repeats show drift."""
+    relative_error: Array
+    """Predicted error after 0, 1, .. poses, relative to that after the last."""
+    information: Array
+    """Information after 0, 1, .. poses [nat]."""
+    unknowns: int
+    enough: int
+    """From so many poses on, ten more reduce the predicted error by less than 2 %."""
+
+    @property
+    def path(self) -> Array:
+        """Joint values in the order of measuring."""
+        return self.joints[self.visits]
+
+    def __len__(self) -> int:
+        return len(self.joints)
+
+    def __repr__(self) -> str:
+        return f"<vernier.Plan: {len(self)} poses in {len(self.visits)} visits, for {self.unknowns} unknowns>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SearchResult:
+    """The end of a search."""
+
+    best: Array
+    value: float
+    evaluations: int
+    generations: int
+    status: str
+    """schedule_ended, budget_spent, target_reached or stalled."""
+
+    def __repr__(self) -> str:
+        return f"<vernier.SearchResult: {self.value:.6g} after {self.evaluations} evaluations, {self.status}>"

@@ -21,37 +21,38 @@ namespace support {
 /// @param change  how its joints follow from those of the controller
 /// @param limits  equal ones hold a joint
 template <class Nominal, int N, class Use>
-void with_branches(const Nominal& nominal, const vernier::JointChange<N>& change, const vernier::JointLimits<N>& limits,
-                   const Use& use) {
-  const auto made = [&]<class Roots>(std::optional<Roots>& roots, const auto&... held) {
-    try {
-      roots.emplace(nominal, held...);
-    } catch (const std::invalid_argument&) {  // another geometry
+void with_branches([[maybe_unused]] const Nominal& nominal, [[maybe_unused]] const vernier::JointChange<N>& change,
+                   [[maybe_unused]] const vernier::JointLimits<N>& limits, const Use& use) {
+  if constexpr (N == 6 || N == 7) {
+    const auto made = [&]<class Roots>(std::optional<Roots>& roots, const auto&... held) {
+      try {
+        roots.emplace(nominal, held...);
+      } catch (const std::invalid_argument&) {  // another geometry
+      }
+      return roots.has_value();
+    };
+    const auto used = [&](const auto&... held) {
+      if (std::optional<vernier::ClosedForm<N>> closed_form; made(closed_form, held...)) {
+        use(vernier::RootsInControllerJoints<vernier::ClosedForm<N>>(*closed_form, change));
+        return true;
+      }
+      if (std::optional<vernier::GeneralSixAxis<N>> general; made(general, held...)) {
+        use(vernier::RootsInControllerJoints<vernier::GeneralSixAxis<N>>(*general, change));
+        return true;
+      }
+      return false;
+    };
+    if constexpr (N == 6) {
+      if (used()) return;
+    } else {
+      for (int k = 0; k < N; ++k) {
+        const int j = change.alone(k);
+        if (j < 0 || j >= change.moving() || !vernier::same_value(limits.lower(j), limits.upper(j))) continue;
+        vernier::JointVector<N> at = vernier::JointVector<N>::Zero();
+        at(j) = limits.lower(j);
+        if (used(vernier::HeldJoint{k, change.to_chain(at)(k)})) return;
+      }
     }
-    return roots.has_value();
-  };
-  const auto used = [&](const auto&... held) {
-    if (std::optional<vernier::ClosedForm<N>> closed_form; made(closed_form, held...)) {
-      use(vernier::RootsInControllerJoints<vernier::ClosedForm<N>>(*closed_form, change));
-      return true;
-    }
-    if (std::optional<vernier::GeneralSixAxis<N>> general; made(general, held...)) {
-      use(vernier::RootsInControllerJoints<vernier::GeneralSixAxis<N>>(*general, change));
-      return true;
-    }
-    return false;
-  };
-  if constexpr (N == 7) {
-    for (int k = 0; k < N; ++k) {
-      const int j = change.alone(k);
-      if (j < 0 || j >= change.moving() || !vernier::same_value(limits.lower(j), limits.upper(j))) continue;
-      vernier::JointVector<N> at = vernier::JointVector<N>::Zero();
-      at(j) = limits.lower(j);
-      if (used(vernier::HeldJoint{k, change.to_chain(at)(k)})) return;
-    }
-  }
-  if constexpr (N == 6) {
-    if (used()) return;
   }
   use(nullptr);
 }

@@ -34,8 +34,8 @@ def test_whole_populations_on_the_calling_thread():
         shapes.add(x.shape)
         return rosen(x.T)
 
-    found = vernier.minimize(f, [-1] * 3, [2] * 3, method="de", population=20, generations=400, seed=2)
-    assert shapes == {(20, 3)} and found.evaluations == 20 * 401
+    found = vernier.minimize(f, [-1] * 3, [2] * 3, method="cma_es", population=20, generations=300, seed=2)
+    assert shapes == {(20, 3)} and found.evaluations % 20 == 0
     np.testing.assert_allclose(found.best, 1, atol=1e-3)
 
 

@@ -95,13 +95,20 @@ class NominalArmOf final : public NominalArm {
   /// Calls `use` with chain joints of blocks of rows, by column: as many as fit into the cache.
   template <class Use>
   void in_blocks(RowsView q, vn::ExecutorRef executor, const Use& use) const {
-    constexpr vn::Index block = 256;
+    constexpr vn::Index block = 512;
     executor.for_ranges(q.rows, [&](vn::Index begin, vn::Index end) {
       vn::JointRows<N> joints;
       for (vn::Index first = begin; first < end; first += block) {
         const vn::Index rows = std::min(block, end - first);
         joints.resize(rows, N);
-        for (vn::Index i = 0; i < rows; ++i) vn::set_configuration(joints, i, chain_joints(change_, q.row(first + i)));
+        if (change_.same()) {
+          const double* from = q.row(first);
+          for (vn::Index i = 0; i < rows; ++i)
+            for (vn::Index j = 0; j < N; ++j) joints(i, j) = *from++;
+        } else {
+          for (vn::Index i = 0; i < rows; ++i)
+            vn::set_configuration(joints, i, chain_joints(change_, q.row(first + i)));
+        }
         use(std::as_const(joints), first);
       }
     });

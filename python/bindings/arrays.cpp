@@ -125,8 +125,7 @@ Array array_of(const std::vector<double>& values) {
   return Array({static_cast<py::ssize_t>(values.size())}, values.data());
 }
 
-int threads_for(vn::Index rows) {
-  constexpr vn::Index rows_of_a_thread = 256;
+int threads_for(vn::Index rows, vn::Index rows_of_a_thread) {
   const vn::Index most = static_cast<vn::Index>(std::thread::hardware_concurrency());
   return static_cast<int>(std::max<vn::Index>(1, std::min(most, rows / rows_of_a_thread)));
 }

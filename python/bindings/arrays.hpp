@@ -81,8 +81,9 @@ Array array_of(const vernier::MatrixX& values);
 Array array_of(const vernier::VectorX& values);
 Array array_of(const std::vector<double>& values);
 
-/// Threads of a call over n independent rows.
-int threads_for(vernier::Index rows);
+/// Threads of a call over n independent rows, as many as are worth starting.
+/// @param rows_of_a_thread which take some milliseconds
+int threads_for(vernier::Index rows, vernier::Index rows_of_a_thread);
 
 /// A path, of str or os.PathLike.
 std::string path_of(const py::object& path);

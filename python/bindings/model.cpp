@@ -70,7 +70,7 @@ Array over_rows(const Model& model, const py::object& q, const py::object& previ
   Array out = new_array(rows.single(), rows.size(), std::move(shape));
   double* to = out.mutable_data();
   const py::gil_scoped_release release;
-  const vn::ThreadExecutor executor(threads_for(rows.size()));
+  const vn::ThreadExecutor executor(threads_for(rows.size(), 3'000));
   f(rows.view(), from.view(), to, executor);
   return out;
 }
@@ -81,7 +81,7 @@ CorrectionAnswer correct(const Model& model, const py::object& q, const py::obje
     CorrectionAnswer out(rows.single(), rows.size(), model.arm->joints());
     const support::CorrectionRows to = out.rows();
     const py::gil_scoped_release release;
-    const vn::ThreadExecutor executor(threads_for(rows.size()));
+    const vn::ThreadExecutor executor(threads_for(rows.size(), 200));
     model.arm->correct(rows.view(), from.view(), to, executor);
     return out;
   }
@@ -92,7 +92,7 @@ CorrectionAnswer correct(const Model& model, const py::object& q, const py::obje
   CorrectionAnswer out(targets.single(), targets.size(), model.arm->joints());
   const support::CorrectionRows to = out.rows();
   const py::gil_scoped_release release;
-  const vn::ThreadExecutor executor(threads_for(targets.size()));
+  const vn::ThreadExecutor executor(threads_for(targets.size(), 200));
   model.arm->correct_poses(targets.view(), seeds.view(), from.view(), to, executor);
   return out;
 }

@@ -105,7 +105,7 @@ Array over_rows(const Robot& robot, const py::object& q, std::vector<vn::Index> 
   Array out = new_array(rows.single(), rows.size(), std::move(shape));
   double* to = out.mutable_data();
   const py::gil_scoped_release release;
-  const vn::ThreadExecutor executor(threads_for(rows.size()));
+  const vn::ThreadExecutor executor(threads_for(rows.size(), 30'000));
   f(rows.view(), to, executor);
   return out;
 }
@@ -124,7 +124,7 @@ IkAnswer ik(const Robot& robot, const py::object& pose, const py::object& q0, co
                            out.rotation_error.mutable_data()};
   const support::IkSettings settings{position_only.value_or(robot.arm->joints() < 6), tolerance, restarts};
   const py::gil_scoped_release release;
-  const vn::ThreadExecutor executor(threads_for(n));
+  const vn::ThreadExecutor executor(threads_for(n, 200));
   robot.arm->inverse(targets.view(), seeds.view(), settings, to, executor);
   return out;
 }

@@ -25,8 +25,8 @@
 #include "vernier/data/csv.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/io/model_file.hpp"
-#include "vernier/kinematics/general_six_axis.hpp"
 #include "vernier/kinematics/in_controller_joints.hpp"
+#include "with_branches.hpp"
 
 namespace {
 
@@ -154,49 +154,6 @@ std::vector<Run<N>> runs_of(const std::vector<vn::PathTarget<N>>& targets, const
   return out;
 }
 
-/// Calls `use` with what finds the branches of an arm of six joints that move, in the controller's joints; with null
-/// for others, whose branch is followed.
-/// @param limits equal ones hold a joint
-template <int N, class Use>
-void with_branches(const vn::CalibratedRobot<N>& robot, const vn::JointLimits<N>& limits, const Use& use) {
-  if constexpr (N == 7) {
-    const vn::JointChange<N> change(robot.controller());
-    for (int k = 0; k < N; ++k) {
-      const int j = change.alone(k);
-      if (j < 0 || j >= change.moving() || !vn::same_value(limits.lower(j), limits.upper(j))) continue;
-      vn::JointVector<N> at = vn::JointVector<N>::Zero();
-      at(j) = limits.lower(j);
-      const vn::HeldJoint held{k, change.to_chain(at)(k)};
-      const auto made = [&]<class Roots>(std::optional<Roots>& roots) {
-        try {
-          roots.emplace(robot.nominal(), held);
-        } catch (const std::invalid_argument&) {  // another geometry
-        }
-        return roots.has_value();
-      };
-      if (std::optional<vn::ClosedForm<N>> closed_form; made(closed_form))
-        return use(vn::RootsInControllerJoints<vn::ClosedForm<N>>(*closed_form, change));
-      if (std::optional<vn::GeneralSixAxis<N>> general; made(general))
-        return use(vn::RootsInControllerJoints<vn::GeneralSixAxis<N>>(*general, change));
-    }
-  }
-  if constexpr (N == 6) {
-    const auto made = [&]<class Roots>(std::optional<Roots>& roots) {
-      try {
-        roots.emplace(robot.nominal());
-      } catch (const std::invalid_argument&) {  // another geometry
-      }
-      return roots.has_value();
-    };
-    const vn::JointChange<N> change(robot.controller());
-    if (std::optional<vn::ClosedForm<N>> closed_form; made(closed_form))
-      return use(vn::RootsInControllerJoints<vn::ClosedForm<N>>(*closed_form, change));
-    if (std::optional<vn::GeneralSixAxis<N>> general; made(general))
-      return use(vn::RootsInControllerJoints<vn::GeneralSixAxis<N>>(*general, change));
-  }
-  use(nullptr);
-}
-
 /// The values of the controller's joints, of which there may be fewer than joints of the chain.
 template <int N>
 std::vector<double> shown_joints(const vn::JointVector<N>& q, const vn::JointChange<N>& change) {
@@ -317,7 +274,8 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
     options.limits = run.limits;
     const auto begin = targets.begin() + static_cast<std::ptrdiff_t>(run.first);
     const std::vector<vn::PathTarget<N>> part(begin, begin + static_cast<std::ptrdiff_t>(run.count));
-    with_branches(robot, run.limits, [&](const auto& roots) { correct_run(run, part, roots); });
+    support::with_branches(robot.nominal(), arm.change(), run.limits,
+                           [&](const auto& roots) { correct_run(run, part, roots); });
   }
   if (!settings.branches)
     for (const auto& target : targets) report.linear = report.linear || target.motion == vn::Motion::linear;

@@ -3,16 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <string>
 
 #include "cli.hpp"
 #include "csv_options.hpp"
 #include "dispatch.hpp"
 #include "robot_choice.hpp"
-#include "vernier/core/rng.hpp"
+#include "simulation.hpp"
 #include "vernier/data/csv.hpp"
-#include "vernier/simulation/error_sources.hpp"
 
 namespace {
 
@@ -26,44 +24,15 @@ struct Settings {
   bool positions_only = false;
 };
 
-/// A number of some joint values: other poses have other noise, the same ones the same.
-std::uint64_t digest(const vn::MatrixX& joints) {
-  std::uint64_t out = 0;
-  for (vn::Index k = 0; k < joints.size(); ++k)
-    out = vn::child_seed(out, std::bit_cast<std::uint64_t>(joints.data()[k]));
-  return out;
-}
-
 template <int N>
 vn::Index simulate(const Settings& o, const vn::RobotDescription& description, const std::string& out,
                    std::uint64_t seed) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   const auto types = robot.arm.model().joint_types();
   const vn::JointRows<N> joints = vn::read_joints<N>(o.poses, types, o.csv.format());
-  const auto chain = vn::with_geometric_errors(robot.arm.model(), {}, vn::child_seed(seed, 0));
-  const double gears = o.gears_urad * 1e-6;
-  vn::JointErrorSizes sizes{.harmonic = gears, .harmonics = 30, .ripple = gears / 20};
-  sizes.down = robot.down;
-  const auto errors = vn::draw_joint_errors(chain, sizes, vn::child_seed(seed, 1));
-  // the sensor stands somewhere, the reflector is somewhere on the flange
-  vn::Rng rng(vn::child_seed(seed, 2));
-  const auto drawn = [&](double position, double rotation) {
-    vn::Isometry3 frame = vn::Isometry3::Identity();
-    for (int k = 0; k < 3; ++k) frame.translation()(k) = rng.uniform(-position, position);
-    frame.linear() = vn::exp_so3(vn::Vector3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)) * rotation);
-    return frame;
-  };
-  const vn::Isometry3 base = drawn(3, 1.5) * robot.arm.base(), tool = robot.arm.tool() * drawn(0.1, 1);
-  const vn::Framed<vn::WithJointErrors<vn::DhChain<N>>> arm(vn::WithJointErrors<vn::DhChain<N>>(chain, errors), base,
-                                                            tool);
-  vn::JointVector<N> backlash = vn::JointVector<N>::Zero();
-  for (int j = 0; j < N; ++j)
-    if (types[static_cast<std::size_t>(j)] == vn::JointType::revolute) backlash(j) = o.backlash_mrad * 1e-3;
-  const vn::MeasurementNoise noise{o.noise_mm * 1e-3, o.noise_mrad * 1e-3, !o.positions_only};
-  vn::write_dataset(out,
-                    vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
-                                              vn::child_seed(seed, digest(joints))),
-                    types, robot.controller);
+  const support::SimulationSettings settings{o.noise_mm * 1e-3, o.noise_mrad * 1e-3, o.backlash_mrad * 1e-3,
+                                             o.gears_urad * 1e-6, !o.positions_only};
+  vn::write_dataset(out, support::simulated(robot, joints, settings, seed), types, robot.controller);
   return joints.rows();
 }
 

@@ -7,10 +7,9 @@
 
 #include "cli.hpp"
 #include "csv_options.hpp"
-#include "dispatch.hpp"
+#include "instances.hpp"
 #include "json_file.hpp"
 #include "report_page.hpp"
-#include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/io.hpp"
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dispatch.hpp"
+#include "held_out.hpp"
 #include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/data/csv.hpp"
@@ -79,41 +80,6 @@ vn::Split<N> split_station(const vn::Dataset<N>& file, const CalibrationOptions&
   return out;
 }
 
-/// Takes training rows away that visit a held-out pose, of any station.
-/// @return how many
-template <int N>
-vn::Index keep_poses_apart(std::vector<vn::Split<N>>& stations, const CalibrationOptions& o, const vn::SamePose& same) {
-  vn::Index tests = 0, trains = 0, out = 0;
-  for (const auto& station : stations) {
-    tests += station.test.size();
-    trains += station.train.size();
-  }
-  vn::JointRows<N> joints(tests + trains, N);
-  vn::Index at = 0;
-  const auto append = [&](const vn::Dataset<N>& data) {
-    joints.middleRows(at, data.size()) = data.joints();
-    at += data.size();
-  };
-  for (const auto& station : stations) append(station.test);
-  for (const auto& station : stations) append(station.train);
-  const std::vector<vn::Index> poses = vn::pose_numbers(joints, same);
-  const vn::Index held_out = *std::max_element(poses.begin(), poses.begin() + tests) + 1;
-  auto pose = poses.begin() + tests;
-  for (std::size_t s = 0; s < stations.size(); ++s) {
-    std::vector<vn::Index> kept;
-    for (vn::Index i = 0; i < stations[s].train.size(); ++i)
-      if (*pose++ >= held_out) kept.push_back(i);
-    out += stations[s].train.size() - static_cast<vn::Index>(kept.size());
-    if (kept.empty())
-      throw vn::CalibrationFailure(o.data[s] +
-                                   ": every pose is also a held-out one, so nothing can be learned from it" +
-                                   (o.test.empty() ? "" : "; --test needs poses that --data has not"));
-    if (static_cast<vn::Index>(kept.size()) < stations[s].train.size())
-      stations[s].train = stations[s].train.rows(kept);
-  }
-  return out;
-}
-
 }  // namespace
 
 template <int N>
@@ -134,7 +100,8 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
     out.inputs.push_back(file_of(out.files.back().origin()));
     if (!o.test.empty()) out.inputs.push_back(file_of(stations.back().test.origin()));
   }
-  if (const vn::Index apart = keep_poses_apart(stations, o, same); apart > 0)
+  const std::string advice = o.test.empty() ? "" : "; --test needs poses that --data has not";
+  if (const vn::Index apart = keep_poses_apart(stations, o.data, advice, same); apart > 0)
     out.held_out += fmt::format("; {} training row{} at held-out poses {} left out", apart, apart == 1 ? "" : "s",
                                 apart == 1 ? "is" : "are");
   for (std::size_t s = 0; s < o.data.size(); ++s) {

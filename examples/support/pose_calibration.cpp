@@ -11,11 +11,10 @@
 #include "calibration_page.hpp"
 #include "dispatch.hpp"
 #include "file_name.hpp"
+#include "instances.hpp"
+#include "known_parts.hpp"
 #include "report_page.hpp"
 #include "saved_model.hpp"
-#include "vernier/calibration/calibrate.hpp"
-#include "vernier/calibration/evaluate.hpp"
-#include "vernier/identification/commanded_parameters.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/search/genetic_algorithm.hpp"
 
@@ -62,18 +61,8 @@ vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, cons
 /// Options with those frames unknown that the arm does not state as known, and without what its passive joints hide.
 /// @throws UsageError for a known base of several stations
 CalibrationOptions options_for(CalibrationOptions o, const vn::RobotDescription& arm) {
-  if (arm.base_known && o.data.size() > 1)
-    throw UsageError(
-        "the base frame of the arm is known, but there are several stations, each with a frame of its own");
-  if (arm.base_known || arm.tool_known)
-    o.calibrate.geometry.frames = arm.base_known && arm.tool_known ? vn::Frames::none
-                                  : arm.base_known                 ? vn::Frames::tool
-                                                                   : vn::Frames::base;
-  std::string held;
-  for (const std::string& name : vn::unseen_parameters(arm.geometry(), arm.controller, o.calibrate.geometry)) {
-    o.calibrate.geometry.fixed.push_back(name);
-    held += (held.empty() ? "" : ", ") + name;
-  }
+  if (arm.base_known && o.data.size() > 1) throw UsageError(known_base_of_stations);
+  const std::string held = hold_known_parts(arm, o.calibrate);
   if (!held.empty()) fmt::print("Held, because passive joints do not move by themselves: {}\n", held);
   return o;
 }

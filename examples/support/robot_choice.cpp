@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 
+#include "robot_of.hpp"
 #include "vernier/io/json.hpp"
 #include "vernier/io/ur_calibration.hpp"
 #ifdef VERNIER_HAS_URDF
@@ -14,19 +16,6 @@
 #endif
 
 namespace support {
-
-namespace {
-
-std::vector<vernier::RobotDescription> catalogue() {
-  using vernier::RobotDescription;
-  namespace robots = vernier::robots;
-  return {RobotDescription::of(robots::abb_irb120()),   RobotDescription::of(robots::ur10()),
-          RobotDescription::of(robots::ur5()),          RobotDescription::of(robots::barrett_wam()),
-          RobotDescription::of(robots::puma560()),      RobotDescription::of(robots::fanuc_r2000ib_165f()),
-          RobotDescription::of(robots::kuka_kr6_r900())};
-}
-
-}  // namespace
 
 Option RobotOptions::add_to(Program& program) {
   std::string names;
@@ -63,7 +52,7 @@ Option RobotOptions::add_to(Program& program) {
   return out;
 }
 
-bool RobotOptions::is_urdf() const { return robot.ends_with(".urdf") || robot.ends_with(".xacro"); }
+bool RobotOptions::is_urdf() const { return support::is_urdf(robot); }
 
 namespace {
 
@@ -102,7 +91,7 @@ void take_controller(const std::vector<std::string>& formulas, vernier::RobotDes
 vernier::RobotDescription arm_of(const RobotOptions& options, [[maybe_unused]] vernier::UrdfChain* chain) {
   if (!options.is_urdf() && !(options.base_link.empty() && options.tip_link.empty()))
     throw UsageError("--base-link and --tip-link are of a URDF file (.urdf) of --robot");
-  const bool yaml = options.robot.ends_with(".yaml") || options.robot.ends_with(".yml");
+  const bool yaml = is_ur_kinematics(options.robot);
   if (!options.ur_calibration.empty() && (options.is_urdf() || yaml))
     throw UsageError(
         "--ur-calibration is for arms of the catalogue or of a JSON file; a URDF file has joint frames of "
@@ -138,23 +127,24 @@ vernier::RobotDescription choose_robot(const RobotOptions& options, vernier::Urd
 
 std::vector<std::string> catalogue_names() {
   std::vector<std::string> names;
-  for (const auto& robot : catalogue()) names.push_back(robot.name);
+  for (const auto& robot : robot_catalogue()) names.push_back(robot.name);
   return names;
 }
 
 vernier::RobotDescription choose_robot(const std::string& name_or_file) {
-  for (auto& robot : catalogue())
-    if (robot.name == name_or_file) return robot;
-  if (const RobotOptions alone{name_or_file, {}, {}, {}, {}, {}};
-      alone.is_urdf() || name_or_file.ends_with(".yaml") || name_or_file.ends_with(".yml"))
-    return choose_robot(alone);
+  std::vector<std::string> remarks;
+  const auto known = catalogue_names();
   std::error_code error;
-  if (name_or_file.ends_with(".json") || std::filesystem::exists(name_or_file, error))
-    return vernier::load_robot(name_or_file);
-  std::string known;
-  for (const auto& name : catalogue_names()) known += (known.empty() ? "" : ", ") + name;
-  throw UsageError("no robot is called '" + vernier::detail::quotable(name_or_file) + "'; there are " + known +
-                   ", or name a file, JSON or URDF");
+  if (std::find(known.begin(), known.end(), name_or_file) == known.end() && !name_or_file.ends_with(".json") &&
+      !is_urdf(name_or_file) && !is_ur_kinematics(name_or_file) && !std::filesystem::exists(name_or_file, error)) {
+    std::string names;
+    for (const auto& name : known) names += (names.empty() ? "" : ", ") + name;
+    throw UsageError("no robot is called '" + vernier::detail::quotable(name_or_file) + "'; there are " + names +
+                     ", or name a file, JSON or URDF");
+  }
+  const vernier::RobotDescription out = robot_of(name_or_file, "", "", remarks);
+  for (const std::string& remark : remarks) fmt::print("{}: {}\n", name_or_file, remark);
+  return out;
 }
 
 }  // namespace support

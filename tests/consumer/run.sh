@@ -159,7 +159,9 @@ make "$build/package" -DVERNIER_COMPILED=OFF $no_ceres $no_json "${no_urdf[@]}" 
 install "$build/package" bare
 rm -rf "$build/package"
 if [[ -n $configured ]]; then
-  quietly "$build/make.log" cmake --build "$configured" --target vernier_compiled{,_io,_urdf,_ceres,_cholmod}
+  targets=(vernier_compiled{,_io,_urdf,_ceres,_cholmod})
+  ! grep -q '^build vernier_python:' "$configured/build.ninja" || targets+=(vernier_python)
+  quietly "$build/make.log" cmake --build "$configured" --target "${targets[@]}"
 else
   configured=$build/package
   make "$configured"

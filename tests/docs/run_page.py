@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the commands of a page in a folder of their own, and compares with what the page shows.
 
-usage: run_page.py PAGE PROGRAMS [--cpp PROGRAM] [--model FILE] [--fill] [--refill]
+usage: run_page.py PAGE PROGRAMS [--cpp PROGRAM] [--python PYTHON] [--model FILE] [--fill] [--refill]
 
 A block ```sh is run by bash, where `examples/` is that of the project and the programs are found; in place of a block
-```cpp its compiled PROGRAM is run. A block ```text that follows shows what it prints, to both streams: words are equal,
+```cpp its compiled PROGRAM is run, and a block ```python by PYTHON. A block ```text that follows shows what it prints, to
+both streams: words are equal,
 numbers within 2 %, times are not compared, and a line `...` stands for any lines. A block without output shown need only
 succeed. --fill writes the output into empty blocks, --refill into all blocks without `...`.
 
@@ -62,6 +63,7 @@ def main():
     parser.add_argument("page", type=pathlib.Path)
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("--cpp", type=pathlib.Path)
+    parser.add_argument("--python", type=pathlib.Path)
     parser.add_argument("--model", type=pathlib.Path)
     parser.add_argument("--fill", action="store_true")
     parser.add_argument("--refill", action="store_true")
@@ -70,7 +72,7 @@ def main():
     project = pathlib.Path(__file__).resolve().parents[2]
     text = page.read_text()
     blocks = list(BLOCK.finditer(text))
-    languages = {"sh", "cpp"} if options.cpp else {"sh"}
+    languages = {"sh"} | ({"cpp"} if options.cpp else set()) | ({"python"} if options.python else set())
     commands = [block for block in blocks if block[1] in languages]
     if not commands:
         sys.exit(f"{page}: no command to run")
@@ -83,7 +85,10 @@ def main():
         for k, block in enumerate(blocks):
             if block[1] not in languages:
                 continue
-            command = block[2] if block[1] == "sh" else str(options.cpp.resolve())
+            command = block[2] if block[1] == "sh" else str(options.cpp.resolve()) if options.cpp else ""
+            if block[1] == "python":
+                (pathlib.Path(folder) / "page.py").write_text(block[2])
+                command = f"{options.python} page.py"
             line = text.count("\n", 0, block.start()) + 1
             done = subprocess.run(["bash", "-ec", f'PATH="{programs}:$PATH"\n{command}'], cwd=folder, text=True,
                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)

@@ -6,11 +6,13 @@
 
 #include <type_traits>
 
+#include "arm_joints.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/types.hpp"
 
-/// Expands `macro(N)` for every number of joints that the programs serve.
-#define VERNIER_FOR_ALL_DOF(macro) macro(1) macro(2) macro(3) macro(4) macro(5) macro(6) macro(7) macro(8) macro(9)
+/// Expands `macro(N)` for every number of joints that this build serves (VERNIER_ARM_JOINTS of CMake): 1 to 9 unless
+/// told otherwise.
+#define VERNIER_FOR_ALL_DOF(macro) VERNIER_ARM_JOINTS(macro)
 static_assert(vernier::max_arm_joints == 9);
 
 namespace support {

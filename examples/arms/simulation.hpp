@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// @file
+/// A virtual arm that is measured: links, gears, compliance and backlash err, drawn from a seed.
+
+#include <bit>
+#include <cstdint>
+
+#include "measured_data.hpp"
+#include "vernier/core/rng.hpp"
+#include "vernier/simulation/error_sources.hpp"
+
+namespace support {
+
+/// Sizes of what errs.
+struct SimulationSettings {
+  double position_noise = 0.03e-3;     ///< standard deviation of a position, per component [m]
+  double orientation_noise = 0.05e-3;  ///< of an orientation [rad]
+  double backlash = 0.02e-3;           ///< half the play of every gear [rad]
+  double gears = 200e-6;               ///< standard deviation of errors of gears and encoders once a turn [rad]
+  bool orientations = true;            ///< whether orientations are measured
+};
+
+/// A number of some joint values: other poses have other noise, the same ones the same.
+inline std::uint64_t digest(const vernier::MatrixX& joints) {
+  std::uint64_t out = 0;
+  for (vernier::Index k = 0; k < joints.size(); ++k)
+    out = vernier::child_seed(out, std::bit_cast<std::uint64_t>(joints.data()[k]));
+  return out;
+}
+
+/// Measures the virtual arm of a seed.
+/// @param joints of the chain, visited in their order
+template <int N>
+vernier::Dataset<N> simulated(const vernier::DescribedRobot<N>& robot, const vernier::JointRows<N>& joints,
+                              const SimulationSettings& settings, std::uint64_t seed) {
+  namespace vn = vernier;
+  const auto types = robot.arm.model().joint_types();
+  const auto chain = vn::with_geometric_errors(robot.arm.model(), {}, vn::child_seed(seed, 0));
+  vn::JointErrorSizes sizes{.harmonic = settings.gears, .harmonics = 30, .ripple = settings.gears / 20};
+  sizes.down = robot.down;
+  const auto errors = vn::draw_joint_errors(chain, sizes, vn::child_seed(seed, 1));
+  // the sensor stands somewhere, the reflector is somewhere on the flange
+  vn::Rng rng(vn::child_seed(seed, 2));
+  const auto drawn = [&](double position, double rotation) {
+    vn::Isometry3 frame = vn::Isometry3::Identity();
+    for (int k = 0; k < 3; ++k) frame.translation()(k) = rng.uniform(-position, position);
+    frame.linear() = vn::exp_so3(vn::Vector3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)) * rotation);
+    return frame;
+  };
+  const vn::Isometry3 base = drawn(3, 1.5) * robot.arm.base(), tool = robot.arm.tool() * drawn(0.1, 1);
+  const vn::Framed<vn::WithJointErrors<vn::DhChain<N>>> arm(vn::WithJointErrors<vn::DhChain<N>>(chain, errors), base,
+                                                            tool);
+  vn::JointVector<N> backlash = vn::JointVector<N>::Zero();
+  for (int j = 0; j < N; ++j)
+    if (types[static_cast<std::size_t>(j)] == vn::JointType::revolute) backlash(j) = settings.backlash;
+  const vn::MeasurementNoise noise{settings.position_noise, settings.orientation_noise, settings.orientations};
+  return vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
+                                   vn::child_seed(seed, digest(joints)));
+}
+
+/// Measures the virtual arm of a seed, whatever its number of joints.
+/// @param joints n x joints of the controller, visited in their order [rad, m]
+/// @throws std::invalid_argument for another number of joints
+MeasuredPoses simulate_poses(const vernier::RobotDescription& robot, const vernier::MatrixX& joints,
+                             const SimulationSettings& settings, std::uint64_t seed);
+
+}  // namespace support

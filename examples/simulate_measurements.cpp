@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <string>
+#include <vector>
 
 #include "cli.hpp"
 #include "csv_options.hpp"
@@ -12,6 +13,7 @@
 #include "robot_choice.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/data/csv.hpp"
+#include "vernier/data/reflectors.hpp"
 #include "vernier/simulation/error_sources.hpp"
 
 namespace {
@@ -23,7 +25,8 @@ struct Settings {
   support::CsvOptions csv;
   std::string poses;
   double noise_mm = 0.03, noise_mrad = 0.05, backlash_mrad = 0.02, gears_urad = 200;
-  bool positions_only = false;
+  bool positions_only = false, in_turn = false;
+  int points = 1;
 };
 
 /// A number of some joint values: other poses have other noise, the same ones the same.
@@ -59,7 +62,23 @@ vn::Index simulate(const Settings& o, const vn::RobotDescription& description, c
   vn::JointVector<N> backlash = vn::JointVector<N>::Zero();
   for (int j = 0; j < N; ++j)
     if (types[static_cast<std::size_t>(j)] == vn::JointType::revolute) backlash(j) = o.backlash_mrad * 1e-3;
-  const vn::MeasurementNoise noise{o.noise_mm * 1e-3, o.noise_mrad * 1e-3, !o.positions_only};
+  const vn::MeasurementNoise noise{o.noise_mm * 1e-3, o.noise_mrad * 1e-3, !o.positions_only && o.points == 1};
+  if (o.points > 1) {
+    std::vector<vn::ReflectorPoses<N>> reflectors;
+    for (int point = 0; point < o.points; ++point) {
+      const vn::Isometry3 there = point == 0 ? tool : robot.arm.tool() * drawn(0.1, 1);
+      const vn::Dataset<N> all =
+          vn::measure_with_backlash(vn::Framed<vn::WithJointErrors<vn::DhChain<N>>>(arm.model(), base, there), joints,
+                                    backlash, vn::approach_directions<N>(joints), noise,
+                                    vn::child_seed(seed, digest(joints) + static_cast<std::uint64_t>(point)));
+      std::vector<vn::Index> rows;
+      for (vn::Index i = 0; i < all.size(); ++i)
+        if (!o.in_turn || i % o.points == point) rows.push_back(i);
+      reflectors.push_back({vn::message(point + 1), all.rows(rows)});
+    }
+    vn::write_reflectors<N>(out, reflectors, types, robot.controller);
+    return joints.rows();
+  }
   vn::write_dataset(out,
                     vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
                                               vn::child_seed(seed, digest(joints))),
@@ -83,15 +102,24 @@ int run(support::Program& program) {
                    "URAD")
       .not_negative();
   program.add_flag("--positions-only", o.positions_only, "orientations are not measured");
+  program
+      .add_setting("--points", o.points,
+                   "number of reflectors on the flange, whose positions alone are measured (column point)", "N")
+      .within(1, 20);
+  program.add_flag("--in-turn", o.in_turn, "each pose is measured with one of these reflectors, in turn");
   program.parse("", "write the measured poses to this file", "FILE");
   const std::string out = program.common().out;
   if (out.empty()) throw support::UsageError("--out is required");
+  if (o.in_turn && o.points < 2) throw support::UsageError("--in-turn needs --points of two or more");
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   o.csv.controller = robot.controller;
   const vn::Index rows =
       support::dispatch_dof(robot.dof(), [&](auto n) { return simulate<n()>(o, robot, out, program.common().seed); });
   fmt::print("{} {}: {} poses of the virtual arm of seed {} measured: {}\n", robot.name,
-             o.positions_only ? "(positions)" : "(poses)", rows, program.common().seed, support::shown(out));
+             o.points > 1       ? fmt::format("({} reflectors{})", o.points, o.in_turn ? " in turn" : "")
+             : o.positions_only ? "(positions)"
+                                : "(poses)",
+             rows, program.common().seed, support::shown(out));
   return 0;
 }
 

@@ -137,7 +137,7 @@ VERNIER_IMPL SharedTouchErrors shared_touch_errors(const ContactProblem& solved,
     }
   };
   PriorProblem trial{NormalEquations({jacobian.rows(), jacobian.rows(), all, {}, row}), VectorX(all),
-                     VectorX::Zero(all), jacobian.rows()};
+                     VectorX::Zero(all), jacobian.rows(), variance};
   if (solved.problem.prior) {
     JointPrior held{MatrixX::Zero(all, all), VectorX::Zero(all), 1};
     VERNIER_LATER(held.precision).topLeftCorner(unknowns, unknowns) = solved.problem.prior->precision;

@@ -31,6 +31,7 @@ Actual arm_with(std::size_t reflector) {
 CalibrateOptions options() {
   CalibrateOptions out;
   out.remainder.on_error_model = false;
+  out.errors.drift = out.errors.hysteresis = false;  // there is none
   return out;
 }
 
@@ -53,14 +54,14 @@ double error_of(const Calibration<Chain>& found, std::size_t reflector) {
 }
 
 // 180 configurations, each measured by one of three reflectors, against 180 with one reflector: three times the poses
-// of each. Mean errors at 300 fresh configurations over four sets of configurations, of the first reflector. Six more
+// of each. Mean errors at 300 fresh configurations over two sets of configurations, of the first reflector. Six more
 // unknowns of 36 cost 6 / (3 x 180 - 36) of the variance, about 1 %; 10 % are allowed for chance.
 TEST(Reflectors, InTurnAreAsAccurateAsOneWithThreeTimesThePoses) {
   double in_turn = 0, one = 0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     const JointRows<6> q = joints(180, 100 + seed);
-    in_turn += error_of(calibrate(robot.chain, measured(q, 10 * seed, true), options()), 0) / 4;
-    one += error_of(calibrate(robot.chain, measure(arm_with(0), q, positions, 10 * seed), options()), 0) / 4;
+    in_turn += error_of(calibrate(robot.chain, measured(q, 10 * seed, true), options()), 0) / 2;
+    one += error_of(calibrate(robot.chain, measure(arm_with(0), q, positions, 10 * seed), options()), 0) / 2;
   }
   EXPECT_LT(in_turn, 1.1 * one);
   EXPECT_LT(in_turn, 0.1e-3);

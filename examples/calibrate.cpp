@@ -44,9 +44,19 @@ void print_measurements(const vn::RobotDescription& robot, const support::Calibr
   if (o.data.size() > 1)
     fmt::print("{} stations: one arm, {} base frames{}\n", o.data.size(), o.data.size(),
                o.calibrate.errors.tool_per_station ? " and as many tools" : "");
+  else if (found.sets.size() > 1)
+    fmt::print("{} reflectors: one arm, one base frame, {} tools\n", found.sets.size(), found.sets.size());
   fmt::print("{} poses to learn from, {} held out: {}\n", report.train_poses, report.test_poses(), found.held_out);
   for (const vn::FittedSet& set : report.others)
     fmt::print("{} measurements ({}) to learn from: {}\n", set.measurements, set.kind, set.name);
+}
+
+void print_reflectors(const std::vector<support::FoundReflector>& reflectors) {
+  if (reflectors.empty()) return;
+  fmt::print("\nReflectors in the frame of the flange, with standard deviations [mm]\n");
+  for (const support::FoundReflector& one : reflectors)
+    fmt::print("  {:<40} {:>10.3f} {:>10.3f} {:>10.3f}   {:.3f} {:.3f} {:.3f}\n", one.name, one.offset.x() * 1e3,
+               one.offset.y() * 1e3, one.offset.z() * 1e3, one.std.x() * 1e3, one.std.y() * 1e3, one.std.z() * 1e3);
 }
 
 int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o) {
@@ -57,7 +67,13 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
   const vn::CalibrationReport& report = found.report;
   print_measurements(robot, o, found);
   fmt::print("\n{}", o.verbose ? report.full_summary() : report.summary());
+  print_reflectors(found.reflectors);
   support::Json json = vn::to_json(report, robot.name);
+  for (const support::FoundReflector& one : found.reflectors)
+    json["reflectors"].push_back({{"measured", one.name},
+                                  {"rows", one.rows},
+                                  {"offset_mm", {one.offset.x() * 1e3, one.offset.y() * 1e3, one.offset.z() * 1e3}},
+                                  {"std_mm", {one.std.x() * 1e3, one.std.y() * 1e3, one.std.z() * 1e3}}});
   for (const vn::DataAudit& audit : found.audits) json["audit"].push_back(vn::to_json(audit));
   if (!program.common().json.empty()) support::write_json(program.common().json, json);
   if (!o.report.empty()) {
@@ -75,7 +91,7 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
   if (!o.verbose) fmt::print("Details behind the verdict: --verbose, or --report FILE\n");
   if (!o.save.empty()) fmt::print("Calibrated model: {}\n", support::shown(o.save));
   for (std::size_t k = 0; k < found.further_models.size(); ++k)
-    fmt::print("With the tool of {}: {}\n", support::shown(o.data[k + 1]), support::shown(found.further_models[k]));
+    fmt::print("With the tool of {}: {}\n", support::shown(found.sets[k + 1]), support::shown(found.further_models[k]));
   if (!o.report.empty()) fmt::print("Report: {}\n", support::shown(o.report));
   return 0;
 }

@@ -315,6 +315,7 @@ int run(support::Program& program) {
       "there: j (joint move) or l (linear move)",
       "FILE");
   settings.csv.add_to(program, "", "--targets");
+  settings.csv.add_euler_to(program);
   support::add_program_options(program, in_place);
   program.add_flag("--poses", settings.poses,
                    "of a file with joints and poses, the poses are the targets; the joints choose the branch");

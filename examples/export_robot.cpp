@@ -23,6 +23,7 @@ namespace vn = vernier;
 struct Settings {
   support::RobotOptions robot;
   support::CsvOptions csv;
+  support::SensorOptions sensor;
   std::string data, urdf, ur_kinematics, ur_hash = "calib_unknown", date;
   vn::Index test_every = 5;
   bool with_base = false, with_tool = false, positions_only = false;
@@ -47,6 +48,8 @@ support::CalibrationOptions calibration_options(const Settings& o, const vn::Rob
   out.csv.controller = robot.controller;
   out.test_every = o.test_every;
   out.calibrate.arm_name = robot.name;
+  out.sensor = o.sensor;
+  o.sensor.apply(out.calibrate.sensors);
   out.calibrate.sensors.use_orientations = !o.positions_only;
   out.calibrate.remainder.on_geometry = true;
   return out;
@@ -119,6 +122,8 @@ int run(support::Program& program) {
   o.robot.add_to(program).required();
   program.add_option("--data", o.data, "measured poses, columns as for calibrate", "FILE").required();
   o.csv.add_to(program);
+  o.csv.add_euler_to(program);
+  o.sensor.add_to(program);
   program.add_setting("--test-every", o.test_every, "hold out every K-th row of the data", "K").within(2, 1000000);
   program.add_output("--urdf", o.urdf,
                      "write the file of --robot (URDF) with the calibrated origins of its joints to this file");
@@ -136,6 +141,7 @@ int run(support::Program& program) {
   program.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
   program.add_setting("--date", o.date, "date written into the files", "DATE");
   program.parse("", nullptr);
+  o.sensor.note(program);
 
   if (o.urdf.empty() && o.ur_kinematics.empty())
     throw support::UsageError("nothing to write: one of --urdf and --ur-kinematics is required");

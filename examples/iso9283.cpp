@@ -131,6 +131,7 @@ int run(support::Program& program) {
       "--runs", settings.runs,
       "measured runs along the path: columns cycle, x_mm .., optionally rx_rad .., in the order of measuring", "FILE");
   settings.csv.add_to(program);
+  settings.csv.add_euler_to(program);
   program.add_setting("--points", settings.points, "points of the path that are compared", "M").within(1, 100000);
   program.add_flag("--plan", settings.plan, "write the five poses of a test to --out instead");
   program.add_option("--centre-mm", settings.centre, "centre of the cube", "X,Y,Z").delimiter(',');

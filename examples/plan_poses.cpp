@@ -15,6 +15,7 @@
 #include "json_file.hpp"
 #include "plan_figures.hpp"
 #include "robot_choice.hpp"
+#include "sensor_options.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
 #include "vernier/io/model_file.hpp"
@@ -28,6 +29,7 @@ namespace vn = vernier;
 struct Settings {
   support::RobotOptions robot;
   support::CsvOptions csv;
+  support::SensorOptions sensor;
   std::string data, model, region, from, held_out, out;
   vn::Index count = 0, add = 0, choose = 0, test_every = 0, candidates = 5000;
   std::vector<double> tracker{}, box{}, region_box{};
@@ -76,6 +78,7 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
   vn::Measurements<N> measured;
   if (!o.data.empty()) {
     measured.add(vn::read_dataset<N>(o.data, types, o.csv.format()));
+    o.sensor.remark(o.data, !measured.poses().front().covariances().empty());
     options.oriented = options.oriented || measured.poses().front().has_orientations();
   }
   vn::Framed<vn::DhChain<N>> arm = robot.arm;
@@ -129,6 +132,7 @@ support::PlanOutcome plan_arm(const Settings& o, const vn::RobotDescription& des
   vn::PlanOptions options{.count = std::max({o.count, o.add, o.choose}), .oriented = o.orientations};
   options.errors.drives = robot.drives;
   options.errors.down = robot.down;
+  o.sensor.apply(options.sensors);
   options.bin_count = o.cover;
   options.bound_iterations = o.bound ? 10 : 0;
   support::PlanOutcome out = o.choose > 0 ? choose_rows(o, robot, options) : plan_new(o, robot, options, seed);
@@ -185,6 +189,8 @@ int run(support::Program& program) {
           .needs(from);
   program.add_output("--held-out", o.held_out, "write those rows to this file").needs(every);
   o.csv.add_to(program);
+  o.csv.add_euler_to(program);
+  o.sensor.add_to(program);
   program.add_option("--tracker", o.tracker, "position of the tracker in the base frame of the arm [mm]", "X,Y,Z")
       .delimiter(',')
       .expected(3)
@@ -219,6 +225,7 @@ int run(support::Program& program) {
   program.add_setting("--candidates", o.candidates, "number of random poses to choose from", "N").within(3, 1000000);
   program.add_flag("--bound", o.bound, "compute how much information no choice exceeds");
   program.parse("", "write the poses to this file", "FILE");
+  o.sensor.note(program);
   o.out = program.common().out;
   if (o.out.empty()) throw support::UsageError("--out is required");
   if (o.count + o.add + o.choose == 0) throw support::UsageError("one of --count, --add and --choose is required");

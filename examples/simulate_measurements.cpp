@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <vector>
 
 #include "cli.hpp"
 #include "csv_options.hpp"
@@ -11,6 +12,7 @@
 #include "robot_choice.hpp"
 #include "simulation.hpp"
 #include "vernier/data/csv.hpp"
+#include "vernier/data/reflectors.hpp"
 
 namespace {
 
@@ -21,7 +23,8 @@ struct Settings {
   support::CsvOptions csv;
   std::string poses;
   double noise_mm = 0.03, noise_mrad = 0.05, backlash_mrad = 0.02, gears_urad = 200;
-  bool positions_only = false;
+  bool positions_only = false, in_turn = false;
+  int points = 1;
 };
 
 template <int N>
@@ -32,7 +35,19 @@ vn::Index simulate(const Settings& o, const vn::RobotDescription& description, c
   const vn::JointRows<N> joints = vn::read_joints<N>(o.poses, types, o.csv.format());
   const support::SimulationSettings settings{o.noise_mm * 1e-3, o.noise_mrad * 1e-3, o.backlash_mrad * 1e-3,
                                              o.gears_urad * 1e-6, !o.positions_only};
-  vn::write_dataset(out, support::simulated(robot, joints, settings, seed), types, robot.controller);
+  const std::vector<vn::Dataset<N>> measured = support::simulated(robot, joints, settings, seed, o.points);
+  if (o.points == 1) {
+    vn::write_dataset(out, measured.front(), types, robot.controller);
+    return joints.rows();
+  }
+  std::vector<vn::ReflectorPoses<N>> reflectors;
+  for (int point = 0; point < o.points; ++point) {
+    std::vector<vn::Index> rows;
+    for (vn::Index i = 0; i < joints.rows(); ++i)
+      if (!o.in_turn || i % o.points == point) rows.push_back(i);
+    reflectors.push_back({vn::message(point + 1), measured[static_cast<std::size_t>(point)].rows(rows)});
+  }
+  vn::write_reflectors<N>(out, reflectors, types, robot.controller);
   return joints.rows();
 }
 
@@ -52,15 +67,24 @@ int run(support::Program& program) {
                    "URAD")
       .not_negative();
   program.add_flag("--positions-only", o.positions_only, "orientations are not measured");
+  program
+      .add_setting("--points", o.points,
+                   "number of reflectors on the flange, whose positions alone are measured (column point)", "N")
+      .within(1, 20);
+  program.add_flag("--in-turn", o.in_turn, "each pose is measured with one of these reflectors, in turn");
   program.parse("", "write the measured poses to this file", "FILE");
   const std::string out = program.common().out;
   if (out.empty()) throw support::UsageError("--out is required");
+  if (o.in_turn && o.points < 2) throw support::UsageError("--in-turn needs --points of two or more");
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   o.csv.controller = robot.controller;
   const vn::Index rows =
       support::dispatch_dof(robot.dof(), [&](auto n) { return simulate<n()>(o, robot, out, program.common().seed); });
   fmt::print("{} {}: {} poses of the virtual arm of seed {} measured: {}\n", robot.name,
-             o.positions_only ? "(positions)" : "(poses)", rows, program.common().seed, support::shown(out));
+             o.points > 1       ? fmt::format("({} reflectors{})", o.points, o.in_turn ? " in turn" : "")
+             : o.positions_only ? "(positions)"
+                                : "(poses)",
+             rows, program.common().seed, support::shown(out));
   return 0;
 }
 

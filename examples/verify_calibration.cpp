@@ -10,6 +10,8 @@
 #include "instances.hpp"
 #include "json_file.hpp"
 #include "report_page.hpp"
+#include "sensor_options.hpp"
+#include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/io.hpp"
 
@@ -19,6 +21,7 @@ namespace vn = vernier;
 
 struct Options {
   support::CsvOptions csv;
+  support::SensorOptions sensor;
   std::string model, data, report, date;
   bool registered = false, tool = false, positions_only = false, no_approach = false;
   double accept_mm = 0, level = 0.05;
@@ -35,10 +38,12 @@ int verify_arm(const support::Program& program, Options& o, const vn::SavedModel
   o.csv.controller = robot.controller();
   vn::Dataset<N> data = vn::read_dataset<N>(o.data, types, o.csv.format());
   if (o.no_approach) data = data.without_approach();
+  o.sensor.remark(o.data, !data.covariances().empty());
   vn::PointRows learned(robot.learned() != nullptr ? data.size() : 0, 3);
   for (vn::Index i = 0; i < learned.rows(); ++i) learned.row(i) = robot.learned()->error(data.joints(i)).transpose();
   vn::VerifyOptions options{.base = !o.registered, .tool = o.tool, .level = o.level};
   if (o.accept_mm > 0) options.accept = o.accept_mm * 1e-3;
+  o.sensor.apply(options.sensors);
   options.sensors.use_orientations = !o.positions_only;
   options.expected_error = robot.provenance().expected_error();
   options.fitted_poses = robot.provenance().fitted_to(data.origin().hashes.front());
@@ -70,6 +75,8 @@ int run(support::Program& program) {
                   "fresh measured poses, columns as for calibrate; 10 to 30 of them, joints moved widely", "FILE")
       .required();
   o.csv.add_to(program);
+  o.csv.add_euler_to(program);
+  o.sensor.add_to(program);
   const support::Option registered = program.add_flag(
       "--registered", o.registered, "sensor and arm stand as they did: the base is not registered first");
   program.add_flag("--tool-remounted", o.tool, "the tool, or its probe, was taken off: it is registered, too")
@@ -88,6 +95,7 @@ int run(support::Program& program) {
   program.add_output("--report", o.report, "write the results as one HTML page that needs nothing else");
   program.add_setting("--date", o.date, "date written into the report", "DATE");
   program.parse("", nullptr);
+  o.sensor.note(program);
   const vn::SavedModel model = vn::read_model(o.model);
   return support::dispatch_dof(model.dof(), [&](auto n) { return verify_arm<n()>(program, o, model); });
 }

@@ -12,7 +12,7 @@ MeasuredPoses simulate_poses(const vernier::RobotDescription& robot, const verni
   const vernier::MatrixX chain = robot.controller.same() ? joints : robot.controller.to_chain(joints);
   return dispatch_dof(robot.dof(), [&](auto n) {
     constexpr int N = n();
-    const vernier::Dataset<N> measured = simulated(robot.arm<N>(), vernier::JointRows<N>(chain), settings, seed);
+    const vernier::Dataset<N> measured = simulated(robot.arm<N>(), vernier::JointRows<N>(chain), settings, seed).front();
     MeasuredPoses out;
     out.joints = joints;
     out.positions = measured.positions();

@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 #include "measured_data.hpp"
 #include "vernier/core/rng.hpp"
@@ -32,16 +33,19 @@ inline std::uint64_t digest(const vernier::MatrixX& joints) {
 
 /// Measures the virtual arm of a seed.
 /// @param joints of the chain, visited in their order
+/// @param points reflectors on the flange, the first in its place for any number of them; several measure no
+/// orientation
+/// @return       the rows of each reflector
 template <int N>
-vernier::Dataset<N> simulated(const vernier::DescribedRobot<N>& robot, const vernier::JointRows<N>& joints,
-                              const SimulationSettings& settings, std::uint64_t seed) {
+std::vector<vernier::Dataset<N>> simulated(const vernier::DescribedRobot<N>& robot, const vernier::JointRows<N>& joints,
+                                           const SimulationSettings& settings, std::uint64_t seed, int points = 1) {
   namespace vn = vernier;
   const auto types = robot.arm.model().joint_types();
   const auto chain = vn::with_geometric_errors(robot.arm.model(), {}, vn::child_seed(seed, 0));
   vn::JointErrorSizes sizes{.harmonic = settings.gears, .harmonics = 30, .ripple = settings.gears / 20};
   sizes.down = robot.down;
   const auto errors = vn::draw_joint_errors(chain, sizes, vn::child_seed(seed, 1));
-  // the sensor stands somewhere, the reflector is somewhere on the flange
+  // the sensor stands somewhere, the reflectors are somewhere on the flange
   vn::Rng rng(vn::child_seed(seed, 2));
   const auto drawn = [&](double position, double rotation) {
     vn::Isometry3 frame = vn::Isometry3::Identity();
@@ -49,15 +53,20 @@ vernier::Dataset<N> simulated(const vernier::DescribedRobot<N>& robot, const ver
     frame.linear() = vn::exp_so3(vn::Vector3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)) * rotation);
     return frame;
   };
-  const vn::Isometry3 base = drawn(3, 1.5) * robot.arm.base(), tool = robot.arm.tool() * drawn(0.1, 1);
-  const vn::Framed<vn::WithJointErrors<vn::DhChain<N>>> arm(vn::WithJointErrors<vn::DhChain<N>>(chain, errors), base,
-                                                            tool);
+  const vn::Isometry3 base = drawn(3, 1.5) * robot.arm.base();
   vn::JointVector<N> backlash = vn::JointVector<N>::Zero();
   for (int j = 0; j < N; ++j)
     if (types[static_cast<std::size_t>(j)] == vn::JointType::revolute) backlash(j) = settings.backlash;
-  const vn::MeasurementNoise noise{settings.position_noise, settings.orientation_noise, settings.orientations};
-  return vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
-                                   vn::child_seed(seed, digest(joints)));
+  const vn::MeasurementNoise noise{settings.position_noise, settings.orientation_noise,
+                                   settings.orientations && points == 1};
+  std::vector<vn::Dataset<N>> out;
+  for (int point = 0; point < points; ++point) {
+    const vn::Framed<vn::WithJointErrors<vn::DhChain<N>>> arm(vn::WithJointErrors<vn::DhChain<N>>(chain, errors), base,
+                                                              robot.arm.tool() * drawn(0.1, 1));
+    out.push_back(vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
+                                            vn::child_seed(seed, digest(joints) + static_cast<std::uint64_t>(point))));
+  }
+  return out;
 }
 
 /// Measures the virtual arm of a seed, whatever its number of joints.

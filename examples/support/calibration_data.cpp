@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/data/csv.hpp"
+#include "vernier/data/reflectors.hpp"
 #include "vernier/data/same_pose.hpp"
 #include "vernier/data/split.hpp"
 
@@ -55,27 +57,41 @@ vn::Split<N> hold_out(const vn::Dataset<N>& data, const CalibrationOptions& o, c
   return vn::split_every(data, o.test_every, same);
 }
 
-/// Training and held-out poses of station s, whose file has these poses.
+/// The poses of one reflector in a file.
+/// @param file for the message
 template <int N>
-vn::Split<N> split_station(const vn::Dataset<N>& file, const CalibrationOptions& o, std::size_t s,
-                           std::span<const vn::JointType> types, std::uint64_t seed, std::string& rule) {
+vn::Dataset<N> poses_of(const std::vector<vn::ReflectorPoses<N>>& reflectors, const std::string& point,
+                        const std::string& file) {
+  for (const vn::ReflectorPoses<N>& one : reflectors)
+    if (one.point == point) return one.poses;
+  throw vn::CalibrationFailure(file + (point.empty()
+                                           ? ": its rows are of named reflectors, those of the other file are not"
+                                           : ": has no rows of the reflector " + point));
+}
+
+/// Training and held-out poses of a set.
+/// @param name of the set, for messages
+/// @param test its held-out poses, if a file has them
+template <int N>
+vn::Split<N> split_station(const vn::Dataset<N>& file, const CalibrationOptions& o, const std::string& name,
+                           const std::optional<vn::Dataset<N>>& test, std::span<const vn::JointType> types,
+                           std::uint64_t seed, std::string& rule) {
   vn::Split<N> out{o.no_approach ? file.without_approach() : file, {}};
-  if (!o.test.empty()) {
-    rule += (s == 0 ? "the rows of " : ", ") + o.test[s];
-    out.test = read_poses<N>(o.test[s], o, types);
+  if (test) {
+    out.test = o.no_approach ? test->without_approach() : *test;
   } else {
     if (out.train.size() < 2)
-      throw vn::CalibrationFailure(o.data[s] + ": a single row; a calibration needs many poses, and held-out ones");
+      throw vn::CalibrationFailure(name + ": a single row; a calibration needs many poses, and held-out ones");
     try {
       out = hold_out(vn::Dataset<N>(out.train), o, {.joint_types = types}, seed, rule);
     } catch (const std::invalid_argument& error) {
-      throw vn::CalibrationFailure(o.data[s] + ": " + error.what());
+      throw vn::CalibrationFailure(name + ": " + error.what());
     }
   }
   const vn::Index n = out.train.size();
   if (o.train_rows > n)
     throw vn::CalibrationFailure(
-        fmt::format("{}: --train asks for {} rows, there are {} to learn from", o.data[s], o.train_rows, n));
+        fmt::format("{}: --train asks for {} rows, there are {} to learn from", name, o.train_rows, n));
   if (o.train_rows > 0) out.train = vn::random_subset(out.train, o.train_rows, seed);
   return out;
 }
@@ -85,6 +101,7 @@ vn::Split<N> split_station(const vn::Dataset<N>& file, const CalibrationOptions&
 template <int N>
 vn::Dataset<N> read_poses(const std::string& file, const CalibrationOptions& o, std::span<const vn::JointType> types) {
   const vn::Dataset<N> data = vn::read_dataset<N>(file, types, o.csv.format());
+  o.sensor.remark(file, !data.covariances().empty());
   return o.no_approach ? data.without_approach() : data;
 }
 
@@ -94,19 +111,38 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
   MeasuredFiles<N> out;
   const vn::SamePose same{.joint_types = types};
   std::vector<vn::Split<N>> stations;
-  for (std::size_t s = 0; s < o.data.size(); ++s) {
-    out.files.push_back(vn::read_dataset<N>(o.data[s], types, o.csv.format()));
-    stations.push_back(split_station<N>(out.files.back(), o, s, types, seed, out.held_out));
-    out.inputs.push_back(file_of(out.files.back().origin()));
-    if (!o.test.empty()) out.inputs.push_back(file_of(stations.back().test.origin()));
+  std::vector<std::string> places, points;
+  for (std::size_t f = 0; f < o.data.size(); ++f) {
+    const auto reflectors = vn::read_reflectors<N>(o.data[f], types, o.csv.format());
+    std::vector<vn::ReflectorPoses<N>> tests;
+    if (!o.test.empty()) {
+      tests = vn::read_reflectors<N>(o.test[f], types, o.csv.format());
+      out.held_out += (f == 0 ? "the rows of " : ", ") + o.test[f];
+    }
+    for (const vn::ReflectorPoses<N>& one : tests) (void)poses_of(reflectors, one.point, o.data[f]);
+    o.sensor.remark(o.data[f], !reflectors.front().poses.covariances().empty());
+    out.inputs.push_back(file_of(reflectors.front().poses.origin()));
+    for (std::size_t k = 1; k < reflectors.size(); ++k) out.inputs.back().rows += reflectors[k].poses.size();
+    if (!tests.empty()) out.inputs.push_back(file_of(tests.front().poses.origin()));
+    for (std::size_t k = 1; k < tests.size(); ++k) out.inputs.back().rows += tests[k].poses.size();
+    for (const vn::ReflectorPoses<N>& one : reflectors) {
+      const bool several = reflectors.size() > 1;
+      out.names.push_back(several ? fmt::format("{}, point {}", o.data[f], one.point) : o.data[f]);
+      places.push_back(o.data[f]);
+      points.push_back(one.point);
+      std::optional<vn::Dataset<N>> test;
+      if (!tests.empty()) test = poses_of(tests, one.point, o.test[f]);
+      out.files.push_back(one.poses);
+      stations.push_back(split_station(one.poses, o, out.names.back(), test, types, seed, out.held_out));
+    }
   }
   const std::string advice = o.test.empty() ? "" : "; --test needs poses that --data has not";
-  if (const vn::Index apart = keep_poses_apart(stations, o.data, advice, same); apart > 0)
+  if (const vn::Index apart = keep_poses_apart(stations, out.names, advice, same); apart > 0)
     out.held_out += fmt::format("; {} training row{} at held-out poses {} left out", apart, apart == 1 ? "" : "s",
                                 apart == 1 ? "is" : "are");
-  for (std::size_t s = 0; s < o.data.size(); ++s) {
-    out.train.add(vn::readings_joined(stations[s].train, same), o.data[s]);
-    out.test.add(std::move(stations[s].test));
+  for (std::size_t s = 0; s < stations.size(); ++s) {
+    out.train.add(vn::readings_joined(stations[s].train, same), out.names[s], places[s], points[s]);
+    out.test.add(std::move(stations[s].test), out.names[s], places[s], points[s]);
   }
   for (const std::string& file : o.distances) {
     const vn::Distances<N> distances = vn::read_distances<N>(file, types, o.csv.format());
@@ -122,13 +158,12 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
 }
 
 template <int N>
-std::vector<vn::DataAudit> audit_files(const CalibrationOptions& o, const vn::DescribedRobot<N>& robot,
-                                       const std::vector<vn::Dataset<N>>& files) {
+std::vector<vn::DataAudit> audit_files(const vn::DescribedRobot<N>& robot, const MeasuredFiles<N>& measured) {
   constexpr vn::Index fewest = 10;
   std::vector<vn::DataAudit> out;
-  for (std::size_t s = 0; s < files.size(); ++s) {
-    out.push_back(files[s].size() < fewest ? vn::DataAudit{} : vn::audit_data(robot.arm, files[s]));
-    if (!out.back().findings.empty()) fmt::print("{}: {}\n", o.data[s], out.back().summary());
+  for (std::size_t s = 0; s < measured.files.size(); ++s) {
+    out.push_back(measured.files[s].size() < fewest ? vn::DataAudit{} : vn::audit_data(robot.arm, measured.files[s]));
+    if (!out.back().findings.empty()) fmt::print("{}: {}\n", measured.names[s], out.back().summary());
     if (const auto map = vn::audited_controller(out.back(), robot.controller, N)) {
       const auto types = robot.arm.chain().joint_types();
       std::string formulas;
@@ -142,13 +177,12 @@ std::vector<vn::DataAudit> audit_files(const CalibrationOptions& o, const vn::De
   return out;
 }
 
-#define VERNIER_INSTANTIATE(N)                                                                                \
-  template vn::Dataset<N> read_poses<N>(const std::string&, const CalibrationOptions&,                        \
-                                        std::span<const vn::JointType>);                                      \
-  template MeasuredFiles<N> read_measurements<N>(const CalibrationOptions&, std::span<const vn::JointType>,   \
-                                                 std::uint64_t);                                              \
-  template std::vector<vn::DataAudit> audit_files<N>(const CalibrationOptions&, const vn::DescribedRobot<N>&, \
-                                                     const std::vector<vn::Dataset<N>>&);
+#define VERNIER_INSTANTIATE(N)                                                                              \
+  template vn::Dataset<N> read_poses<N>(const std::string&, const CalibrationOptions&,                      \
+                                        std::span<const vn::JointType>);                                    \
+  template MeasuredFiles<N> read_measurements<N>(const CalibrationOptions&, std::span<const vn::JointType>, \
+                                                 std::uint64_t);                                            \
+  template std::vector<vn::DataAudit> audit_files<N>(const vn::DescribedRobot<N>&, const MeasuredFiles<N>&);
 VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
 #undef VERNIER_INSTANTIATE
 

@@ -4,6 +4,7 @@
 /// @file
 /// The measurements that `calibrate` reads: what it learns from, what it holds out, and faults in the files.
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -21,11 +22,20 @@ namespace support {
 /// All measurements of an arm, as far as files have them.
 template <int N>
 struct MeasuredFiles {
-  std::vector<vernier::Dataset<N>> files;   ///< poses as the files have them, one set a station
+  std::vector<std::string> names;           ///< of the sets of poses: the file, with the reflector where it has several
+  std::vector<vernier::Dataset<N>> files;   ///< poses as the files have them, one set a station and reflector
   vernier::Measurements<N> train;           ///< to learn from: poses, distances and contacts
   vernier::Measurements<N> test;            ///< held-out poses, stations as in `train`
   std::string held_out;                     ///< which poses those are, in words
   std::vector<vernier::ReportFile> inputs;  ///< all files that were read
+
+  /// Whether sets of poses have tools of their own: they are of several reflectors, or an option says so.
+  bool has_own_tools(bool each) const {
+    const auto& sets = train.sets();
+    const auto differs = [&](const vernier::MeasuredSet& set) { return set.reflector != sets.front().reflector; };
+    const auto end = sets.begin() + static_cast<std::ptrdiff_t>(train.poses().size());
+    return train.poses().size() > 1 && (each || std::any_of(sets.begin(), end, differs));
+  }
 };
 
 // Defined and compiled in calibration_data.cpp, for all numbers of joints.
@@ -45,10 +55,8 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& options, std::span<
                                    std::uint64_t seed);
 
 /// Looks for faults in the files of poses and prints them, before a calibration may refuse them.
-/// @param files poses of the files `options.data`
-/// @return one audit a file; without findings for files too short to be audited
+/// @return one audit a set of poses; without findings for sets too short to be audited
 template <int N>
-std::vector<vernier::DataAudit> audit_files(const CalibrationOptions& options, const vernier::DescribedRobot<N>& robot,
-                                            const std::vector<vernier::Dataset<N>>& files);
+std::vector<vernier::DataAudit> audit_files(const vernier::DescribedRobot<N>& robot, const MeasuredFiles<N>& measured);
 
 }  // namespace support

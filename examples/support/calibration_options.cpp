@@ -24,8 +24,8 @@ void add_measurements(Program& program, CalibrationOptions& o, TypedValues& type
   program.add_option("--data", o.data,
                      "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, time_s (or "
                      "time_ms), temperature_c, segment (a new number: the approach is unknown) or from_q1_rad.. (where "
-                     "each pose was approached from); "
-                     "one file a sensor station",
+                     "each pose was approached from), point (which of several reflectors; or all in one line, "
+                     "x1_mm .. zK_mm); one file a sensor station",
                      "FILE");
   const Option contacts =
       program.add_option("--contacts", o.contacts,
@@ -41,9 +41,9 @@ void add_measurements(Program& program, CalibrationOptions& o, TypedValues& type
                      "q1_rad.., distance_mm; one file a fixed point",
                      "FILE");
   o.csv.add_to(program);
-  program
-      .add_setting("--distance-sigma", typed.distance_sigma_mm,
-                   "standard deviation of a distance [mm]; of positions it is 0.03 mm", "MM")
+  o.csv.add_euler_to(program);
+  o.sensor.add_to(program);
+  program.add_setting("--distance-sigma", typed.distance_sigma_mm, "standard deviation of a distance [mm]", "MM")
       .within(1e-6, 1e3);
 }
 
@@ -232,6 +232,8 @@ CalibrationOptions read_calibration_options(Program& program) {
   const std::map<std::string, vn::Loss> losses{
       {"squared", vn::Loss::squared}, {"huber", vn::Loss::huber}, {"cauchy", vn::Loss::cauchy}};
   vn::SensorModel& sensors = o.calibrate.sensors;
+  o.sensor.note(program);
+  o.sensor.apply(sensors);
   sensors.loss = losses.at(typed.loss);
   sensors.distance_sigma = typed.distance_sigma_mm * 1e-3;
   sensors.contact_sigma = typed.contact_sigma_mm * 1e-3;

@@ -10,6 +10,7 @@
 #include "cli.hpp"
 #include "csv_options.hpp"
 #include "robot_choice.hpp"
+#include "sensor_options.hpp"
 #include "vernier/calibration/calibrate.hpp"
 
 namespace support {
@@ -30,6 +31,7 @@ struct CalibrationOptions {
   std::string save_poses;                    ///< file for poses that images show; empty: none
   std::string flange_poses;                  ///< file of poses of the flange in place of joints; empty: none
   CsvOptions csv;                            ///< how these files are written
+  SensorOptions sensor;                      ///< accuracy of measured poses; `calibrate.sensors` has it, too
   std::string split;                         ///< how a fraction of the rows is held out; empty: every K-th row
   vernier::Index test_every = 5;             ///< that K
   double test_fraction = 0.2;                ///< that fraction

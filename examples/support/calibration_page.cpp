@@ -22,12 +22,12 @@ struct PagePoses {
 };
 
 template <int N>
-PagePoses poses_of(const CalibrationOptions& o, const vn::DescribedRobot<N>& robot, const MeasuredFiles<N>& measured) {
+PagePoses poses_of(const vn::DescribedRobot<N>& robot, const MeasuredFiles<N>& measured) {
   PagePoses out;
-  for (std::size_t s = 0; s < o.data.size(); ++s) {
+  for (std::size_t s = 0; s < measured.train.poses().size(); ++s) {
     const vn::Dataset<N>&train = measured.train.poses()[s], &test = measured.test.poses()[s];
     for (const vn::Index line : train.origin().line)
-      out.learned_from.push_back(fmt::format("line {} of {}", line, file_name(o.data[s])));
+      out.learned_from.push_back(fmt::format("line {} of {}", line, file_name(measured.names[s])));
     add_poses(out.held_out, robot.arm, test);
   }
   return out;
@@ -38,7 +38,7 @@ PagePoses poses_of(const CalibrationOptions& o, const vn::DescribedRobot<N>& rob
 template <int N>
 vn::ReportInput calibration_page(const vn::CalibrationReport& report, const CalibrationOptions& o,
                                  const vn::DescribedRobot<N>& robot, const MeasuredFiles<N>& measured) {
-  PagePoses poses = poses_of(o, robot, measured);
+  PagePoses poses = poses_of(robot, measured);
   vn::ReportInput page = vn::report_input(report, robot.name, poses.learned_from);
   poses.held_out.poses.normalised = page.poses.normalised;
   poses.held_out.poses.gates = page.poses.gates;

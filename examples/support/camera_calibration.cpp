@@ -3,13 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "dispatch.hpp"
+#include "figures.hpp"
 #include "file_name.hpp"
 #include "json_file.hpp"
 #include "robot_choice.hpp"
@@ -123,10 +128,105 @@ std::string parameter_table(const vn::CameraReport& report) {
   return out;
 }
 
+/// How much of its range a joint had in the images: bins of a tenth of a radian or metre, angles within a turn.
+struct SeenRange {
+  double lower = 0, upper = 0;  ///< smallest and largest value [rad, m]
+  double share = 0;             ///< of the bins of its range
+  bool revolute = true;         ///< whether these are angles
+};
+
+template <int N>
+std::vector<SeenRange> seen_ranges(const vn::DescribedRobot<N>& robot, const vn::ImageRows& rows,
+                                   const vn::CameraReport& report) {
+  constexpr double turn = 2 * std::numbers::pi, bin = 0.1;
+  std::vector<SeenRange> out;
+  const auto types = robot.arm.model().joint_types();
+  for (int j = 0; j < N; ++j) {
+    const double lowest = robot.limits.lower(j), highest = robot.limits.upper(j);
+    SeenRange one{.lower = std::numeric_limits<double>::infinity(),
+                  .upper = -std::numeric_limits<double>::infinity(),
+                  .revolute = types[static_cast<std::size_t>(j)] == vn::JointType::revolute};
+    const double range = one.revolute ? std::min(turn, highest - lowest) : highest - lowest;
+    const double bins = std::isfinite(range) ? std::max(1.0, std::ceil(range / bin - 1e-9)) : 1;
+    std::set<double> seen;
+    for (const vn::ImagePose& pose : report.poses) {
+      const double q = rows.joints(pose.row, j);
+      one.lower = std::min(one.lower, q);
+      one.upper = std::max(one.upper, q);
+      const double from = one.revolute ? std::remainder(q - (lowest + highest) / 2, turn) + range / 2 : q - lowest;
+      seen.insert(std::clamp(std::floor(from / range * bins), 0.0, bins - 1));
+    }
+    one.share = static_cast<double>(seen.size()) / bins;
+    out.push_back(one);
+  }
+  return out;
+}
+
+std::string range_table(const std::vector<SeenRange>& ranges) {
+  std::string out = fmt::format("\n  {:<10}{:>12}{:>12}{:>18}\n", "joint", "from", "to", "share of range");
+  for (std::size_t j = 0; j < ranges.size(); ++j) {
+    const SeenRange& one = ranges[j];
+    const double unit = one.revolute ? 180 / std::numbers::pi : 1e3;
+    out += fmt::format("  q{:<9}{:>12.1f}{:>12.1f}{:>16.0f} %  {}\n", j + 1, one.lower * unit, one.upper * unit,
+                       one.share * 100, one.revolute ? "deg" : "mm");
+  }
+  return out + "  Where a joint was not seen, its errors are not known; more places of the board show more\n";
+}
+
+Json to_json(const std::vector<SeenRange>& ranges) {
+  Json out = Json::array();
+  for (std::size_t j = 0; j < ranges.size(); ++j) {
+    const SeenRange& one = ranges[j];
+    const double unit = one.revolute ? 180 / std::numbers::pi : 1e3;
+    const char* name = one.revolute ? "deg" : "mm";
+    out.push_back({{"joint", j + 1},
+                   {fmt::format("from_{}", name), one.lower * unit},
+                   {fmt::format("to_{}", name), one.upper * unit},
+                   {"share", one.share}});
+  }
+  return out;
+}
+
+/// Residuals of a camera's corners over its image, enlarged: a pattern about the middle is distortion that is missing.
+void draw_residuals(const std::filesystem::path& path, const vn::CameraReport& report, vn::Index camera) {
+  double squares = 0, count = 0;
+  std::array<double, 2> size{};
+  const auto is_of = [&](const vn::CornerResidual& corner) {
+    return report.images[static_cast<std::size_t>(corner.image)].camera == camera;
+  };
+  for (const vn::CornerResidual& corner : report.residuals) {
+    if (!is_of(corner)) continue;
+    squares += corner.residual_u * corner.residual_u + corner.residual_v * corner.residual_v;
+    ++count;
+    size = {std::max(size[0], corner.u), std::max(size[1], corner.v)};
+  }
+  const vn::Camera& intrinsics = report.cameras[static_cast<std::size_t>(camera)];
+  if (intrinsics.width > 0) size = {static_cast<double>(intrinsics.width), static_cast<double>(intrinsics.height)};
+  const double rms = std::sqrt(squares / std::max(count, 1.0));
+  if (!(rms > 0)) return;
+  const double wanted = 0.02 * size[0] / rms, decade = std::pow(10, std::floor(std::log10(wanted)));
+  const double scale = decade * (wanted / decade >= 5 ? 5 : wanted / decade >= 2 ? 2 : 1);
+  constexpr double gap = std::numeric_limits<double>::quiet_NaN();
+  Series found{.name = "found", .x = {}, .y = {}, .style = Style::points, .colour = 0},
+      left{.name = fmt::format("to where the model has it, {:g} times", scale), .x = {}, .y = {}, .colour = 1};
+  for (const vn::CornerResidual& corner : report.residuals) {
+    if (!is_of(corner)) continue;
+    found.x.push_back(corner.u);
+    found.y.push_back(corner.v);
+    left.x.insert(left.x.end(), {corner.u, corner.u + scale * corner.residual_u, gap});
+    left.y.insert(left.y.end(), {corner.v, corner.v + scale * corner.residual_v, gap});
+  }
+  plot_svg(path,
+           fmt::format("Residuals of {}: {:.3f} px rms", report.camera_names[static_cast<std::size_t>(camera)], rms),
+           "u [px]", "v [px]", {left, found},
+           {.x_range = std::pair(0.0, size[0]), .y_range = std::pair(size[1], 0.0), .equal_axes = true});
+}
+
 /// What a saved model says of the images.
 vn::CameraSetup setup_of(const vn::CameraReport& report) {
   return {report.mount == vn::CameraMount::flange,
           report.cameras,
+          report.camera_covariances,
           report.camera_names,
           report.board,
           report.board_names,
@@ -137,10 +237,11 @@ vn::CameraSetup setup_of(const vn::CameraReport& report) {
 template <int N>
 vn::CameraReport calibrate_arm(const CalibrationOptions& o, const vn::RobotDescription& description,
                                const vn::Board& board, const vn::CornerViews& views, const vn::CsvFormat& format,
-                               const vn::CameraOptions& options) {
+                               const vn::CameraOptions& options, std::vector<SeenRange>& ranges) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   const vn::ImageRows rows = vn::read_image_joints(o.data.front(), N, description.joint_types(), format);
   const auto found = vn::calibrate_by_camera(robot.arm, board, views, rows, options);
+  ranges = seen_ranges(robot, rows, found);
   if (!o.save.empty()) {
     vn::IdentificationReport no_covariance;
     vn::Provenance from{.rows = static_cast<vn::Index>(found.images.size()), .measured = "images"};
@@ -182,7 +283,9 @@ int calibrate_by_camera(Program& program, const CalibrationOptions& o) {
   if (!options.cameras.empty() && options.cameras.size() != views.cameras.size())
     throw UsageError(fmt::format("{} files of --intrinsics, but the corners are of {} cameras", options.cameras.size(),
                                  views.cameras.size()));
+  program.require_output_folder();
   vn::CameraReport report;
+  std::vector<SeenRange> ranges;
   std::string name = "poses of the flange";
   if (!o.flange_poses.empty()) {
     report = vn::calibrate_hand_eye(board, views, vn::read_flange_poses(o.flange_poses, format), options);
@@ -190,12 +293,22 @@ int calibrate_by_camera(Program& program, const CalibrationOptions& o) {
     const vn::RobotDescription robot = choose_robot(o.robot);
     name = robot.name;
     format.controller = robot.controller;
-    report =
-        dispatch_dof(robot.dof(), [&](auto n) { return calibrate_arm<n()>(o, robot, board, views, format, options); });
+    report = dispatch_dof(robot.dof(),
+                          [&](auto n) { return calibrate_arm<n()>(o, robot, board, views, format, options, ranges); });
   }
   fmt::print("{}\n{}{}", name, report.summary(), image_table(report));
   if (!report.parameters.empty()) fmt::print("{}", parameter_table(report));
-  if (!program.common().json.empty()) write_json(program.common().json, to_json(report));
+  if (!ranges.empty()) fmt::print("{}", range_table(ranges));
+  if (!program.common().json.empty()) {
+    Json json = to_json(report);
+    if (!ranges.empty()) json["joints"] = to_json(ranges);
+    write_json(program.common().json, json);
+  }
+  const std::filesystem::path folder = program.output_folder();
+  for (std::size_t c = 0; c < report.cameras.size(); ++c)
+    draw_residuals(folder / (c == 0 ? "residuals.svg" : fmt::format("residuals.{}.svg", c + 1)), report,
+                   static_cast<vn::Index>(c));
+  fmt::print("\nFigures: {}\n", folder.string());
   if (!o.save.empty()) fmt::print("Calibrated model: {}\n", shown(o.save));
   return 0;
 }

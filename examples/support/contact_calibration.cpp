@@ -43,6 +43,8 @@ Json to_json(const vn::ContactReport& report, const std::string& robot) {
            {"touches_rms_before_mm", report.rms_before * 1e3},
            {"touches_rms_after_mm", report.rms_after * 1e3},
            {"condition", report.condition},
+           {"object_sigma_mm", report.object_sigma * 1e3},
+           {"joint_sigma_mrad", report.joint_sigma * 1e3},
            {"scale_observable", report.scale_observable},
            {"directions", report.singular_values.size()},
            {"unobservable_directions", report.unobservable},

@@ -6,6 +6,9 @@
 #include <cctype>
 #include <string_view>
 
+#include "vernier/core/check.hpp"
+#include "vernier/data/detail/pose_values.hpp"
+
 namespace support {
 
 char one_character(const std::string& text, const std::string& option) {
@@ -25,8 +28,20 @@ void CsvOptions::add_to(Program& program, const std::string& of, const std::stri
   program.add_option(("--" + of + "decimal").c_str(), decimal, "decimal point of " + what + "; . without it", "C");
 }
 
+void CsvOptions::add_euler_to(Program& program) {
+  program.add_option("--euler", euler,
+                     "orientations are Euler angles about these axes, in the order of turning: ZYX (each about the "
+                     "turned axes) or xyz (about fixed axes); columns rx_deg, ry_deg, rz_deg (about x, y and z) or "
+                     "euler1_deg .. euler3_deg (in that order). Without it rx_rad .. are a rotation vector",
+                     "AXES");
+}
+
 vernier::CsvFormat CsvOptions::format() const {
   vernier::CsvFormat out;
+  if (!euler.empty() && !vernier::detail::euler_axes(euler))
+    throw UsageError("--euler takes three axes, such as ZYX (turned axes) or xyz (fixed axes); not '" +
+                     vernier::detail::quotable(euler) + "'");
+  out.euler = euler;
   if (!separator.empty()) out.separator = one_character(separator, "--" + of_ + "separator");
   if (!decimal.empty()) out.decimal = one_character(decimal, "--" + of_ + "decimal");
   if (out.decimal != '.' && out.decimal != ',') throw UsageError("--" + of_ + "decimal is . or ,");

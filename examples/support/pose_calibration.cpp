@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -44,7 +45,43 @@ std::string file_names(const std::vector<std::string>& paths) {
 template <int N>
 std::string file_hashes(const std::vector<vn::Dataset<N>>& sets) {
   std::string out;
-  for (const auto& set : sets) out += (out.empty() ? "" : ",") + set.origin().hashes.front();
+  for (const auto& set : sets)
+    if (const std::string& hash = set.origin().hashes.front(); !out.ends_with(hash))
+      out += (out.empty() ? "" : ",") + hash;
+  return out;
+}
+
+/// The tools of sets that have their own.
+template <class Chain>
+std::vector<FoundReflector> reflectors_of(const vn::Calibration<Chain>& calibration,
+                                          const vn::Measurements<Chain::dof>& measured) {
+  std::vector<FoundReflector> out;
+  const vn::Index tool = vn::ArmParameters::chain_end(Chain::dof);
+  for (std::size_t s = 0; s < measured.poses().size(); ++s) {
+    FoundReflector one{measured.sets()[s].name, measured.poses()[s].size(),
+                       calibration.model(s).identified().tool().translation(), vn::Vector3::Zero()};
+    const vn::ErrorModelEstimate estimate = calibration.errors.of_station(static_cast<int>(s));
+    const auto& unknowns = estimate.arm.geometric();
+    for (std::size_t k = 0; k < unknowns.size() && estimate.covariance.size() > 0; ++k)
+      if (const vn::Index axis = unknowns[k].parameter - tool; axis >= 0 && axis < 3 && !unknowns[k].thermal) {
+        const auto at = static_cast<vn::Index>(k);
+        one.std(axis) = unknowns[k].scale * std::sqrt(estimate.covariance(at, at));
+      }
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+/// What a page shows of reflectors.
+vn::ReportTable reflector_table(const std::vector<FoundReflector>& reflectors) {
+  vn::ReportTable out{.title = "Reflectors",
+                      .note = "Where each measured point is in the frame of the flange, with standard deviations.",
+                      .head = {"measured", "poses", "x [mm]", "y [mm]", "z [mm]", "std [mm]"}};
+  for (const FoundReflector& one : reflectors)
+    out.rows.push_back(
+        {one.name, fmt::format("{}", one.rows), fmt::format("{:.3f}", one.offset.x() * 1e3),
+         fmt::format("{:.3f}", one.offset.y() * 1e3), fmt::format("{:.3f}", one.offset.z() * 1e3),
+         fmt::format("{:.3f}, {:.3f}, {:.3f}", one.std.x() * 1e3, one.std.y() * 1e3, one.std.z() * 1e3)});
   return out;
 }
 
@@ -78,7 +115,7 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
   if (earlier) prior = prior_of(*earlier, N);
   const auto measured =
       std::make_shared<const MeasuredFiles<N>>(read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed));
-  std::vector<vn::DataAudit> audits = audit_files(o, robot, measured->files);
+  std::vector<vn::DataAudit> audits = audit_files(robot, *measured);
 
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
@@ -96,21 +133,28 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
                       .held_out = measured->held_out,
                       .audits = std::move(audits)};
   out.error_of = [measured, o](const vn::RobotDescription& arm) { return held_out_error(arm, *measured, o); };
-  const vn::RobotInfo<N> info{.name = robot.name,
-                              .limits = robot.limits,
-                              .data_file = file_names(o.data),
-                              .date = o.date,
-                              .held_out_error = out.report.stage(out.report.chosen).position.mean(),
-                              .data_sha256 = file_hashes<N>(measured->files),
-                              .controller = robot.controller};
-  if (!o.save.empty()) out.model = {o.save, vn::save(o.save, calibration, info)};
-  for (std::size_t s = 1; !o.save.empty() && options.errors.tool_per_station && s < o.data.size(); ++s) {
+  const bool own_tools = measured->has_own_tools(options.errors.tool_per_station);
+  out.sets = measured->names;
+  if (own_tools) out.reflectors = reflectors_of(calibration, measured->train);
+  const auto info_of = [&](std::size_t set) {
+    const std::string& reflector = measured->train.sets()[set].reflector;
+    return vn::RobotInfo<N>{.name = robot.name,
+                            .limits = robot.limits,
+                            .data_file = file_names(o.data) + (reflector.empty() ? "" : " (point " + reflector + ")"),
+                            .date = o.date,
+                            .held_out_error = out.report.stage(out.report.chosen).position.mean(),
+                            .data_sha256 = file_hashes<N>(measured->files),
+                            .controller = robot.controller};
+  };
+  if (!o.save.empty()) out.model = {o.save, vn::save(o.save, calibration, info_of(0))};
+  for (std::size_t s = 1; !o.save.empty() && own_tools && s < out.sets.size(); ++s) {
     out.further_models.push_back(numbered(o.save, s + 1));
-    vn::save(out.further_models.back(), calibration, info, s);
+    vn::save(out.further_models.back(), calibration, info_of(s), s);
   }
   if (!o.report.empty()) {
     out.page = calibration_page(out.report, o, robot, *measured);
-    out.page.audit = audit_rows(o.data, out.audits);
+    out.page.audit = audit_rows(measured->names, out.audits);
+    if (!out.reflectors.empty()) out.page.tables.push_back(reflector_table(out.reflectors));
     std::vector<vn::ReportFile>& inputs = out.page.provenance.inputs;
     if (earlier) inputs.push_back({earlier->file(), 0, earlier->hash()});
     for (const vn::SourceFile& file : description.files) inputs.push_back({file.name, 0, file.hash});

@@ -21,6 +21,14 @@ namespace support {
 /// Generations of a search of priors.
 inline constexpr vernier::Index prior_generations = 15;
 
+/// A reflector on the flange.
+struct FoundReflector {
+  std::string name;         ///< the set of poses that measured it
+  vernier::Index rows = 0;  ///< number of poses it was fitted to
+  vernier::Vector3 offset;  ///< its place in the frame of the flange [m]
+  vernier::Vector3 std;     ///< standard deviations [m]; 0 where it was not estimated
+};
+
 /// A calibration from measured poses, assessed.
 struct PoseCalibration {
   vernier::ArmGeometry nominal;               ///< the arm as designed
@@ -29,7 +37,9 @@ struct PoseCalibration {
   std::string held_out{};                     ///< which poses are held out, in words
   std::vector<vernier::DataAudit> audits{};   ///< of the files of poses
   vernier::SourceFile model{};                ///< that was saved; without a name where none was
-  std::vector<std::string> further_models{};  ///< with `--own-tools`: those of the other files' tools
+  std::vector<std::string> sets{};            ///< of poses: the file, with the reflector where it has several
+  std::vector<FoundReflector> reflectors{};   ///< of files with several, or with `--own-tools`; else none
+  std::vector<std::string> further_models{};  ///< of the other tools, in the order of `sets`
   vernier::ReportInput page{};                ///< what an HTML page shows; empty unless it is asked for
   /// Held-out position errors at the first station by another description of the arm, its base and tool registered by
   /// the poses to learn from [m].

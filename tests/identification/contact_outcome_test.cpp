@@ -186,7 +186,7 @@ TEST(ContactOutcome, AScaleThatIsNotObservedIsKnownAsItIsHeld) {
   const double variance = std::pow(found.rms_after / sigma, 2) * 60 / (60 - 30 + 1);
   const RealMatrix links = links_of(found);
   const double held = 1e-6 * links.squared_norm() / size * std::sqrt(variance) * size / size;
-  const double deviation = std::sqrt(links.dot(RealMatrix(found.covariance) * links)) / size;
+  const double deviation = std::sqrt(links.dot(RealMatrix(found.independent_covariance) * links)) / size;
   EXPECT_NEAR(deviation, held, 1e-3 * held);
   for (const Index k : found.free) {
     const ParameterEstimate& p = found.parameters[static_cast<std::size_t>(k)];

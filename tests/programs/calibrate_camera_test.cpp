@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -87,6 +89,22 @@ TEST_F(CalibrateCamera, IdentifiesAnArmAndKeepsCameraAndBoard) {
   const nlohmann::json found = results();
   EXPECT_EQ(found.at("images").size(), 30u);
   EXPECT_LT(found.at("left_out_mean_mm").get<double>(), 0.5);
+  ASSERT_EQ(found.at("joints").size(), 6u);
+  for (const nlohmann::json& joint : found.at("joints")) {
+    EXPECT_GT(joint.at("share").get<double>(), 0.1);
+    EXPECT_LT(joint.at("share").get<double>(), 1);
+    EXPECT_LT(joint.at("from_deg").get<double>(), joint.at("to_deg").get<double>());
+  }
+  ASSERT_EQ(kept->covariances.size(), 1u);
+  const MatrixX& covariance = kept->covariances[0];
+  const nlohmann::json std = found.at("cameras").at(0).at("std");
+  for (Index k = 0; k < Camera::num_parameters; ++k)
+    EXPECT_NEAR(std::sqrt(covariance(k, k)), std.at(Camera::names[static_cast<std::size_t>(k)]).get<double>(), 1e-9);
+  EXPECT_LT(std::abs(covariance(0, 2)), std::sqrt(covariance(0, 0) * covariance(2, 2)));
+  if (std::system("command -v gnuplot > /dev/null") == 0) {
+    EXPECT_NE(read_file((folder_ / "figures/residuals.svg").string()).find("where the model has it"),
+              std::string::npos);
+  }
 }
 
 TEST_F(CalibrateCamera, FindsBaseAndToolFromPosesOfTheFlange) {

@@ -76,9 +76,10 @@ inline std::vector<vernier::Contact> three_planes(bool with_length, vernier::Ind
 inline double variance_of_touches(const vernier::ContactReport& found, vernier::Index values, vernier::Index of_objects,
                                   double sigma) {
   double freedom = static_cast<double>(values - of_objects);
-  for (const vernier::Index k : found.free) {
-    const vernier::ParameterEstimate& p = found.parameters[static_cast<std::size_t>(k)];
-    freedom -= 1 - std::pow(p.std / p.prior_std, 2);
+  for (std::size_t i = 0; i < found.free.size(); ++i) {
+    const vernier::ParameterEstimate& p = found.parameters[static_cast<std::size_t>(found.free[i])];
+    const auto at = static_cast<vernier::Index>(i);
+    freedom -= 1 - found.independent_covariance(at, at) / std::pow(p.prior_std, 2);
   }
   return std::pow(found.rms_after / sigma, 2) * static_cast<double>(values) / freedom;
 }

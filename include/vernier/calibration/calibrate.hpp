@@ -58,7 +58,11 @@ Calibration<Chain> fitted(const Framed<Chain>& nominal, const Measurements<Chain
   frames_alone.geometry = false;
   StagedModels<Chain> frames{Stage::frames, true, {}};
   for (std::size_t s = 0; s < stations; ++s) {
-    const auto registered = identified_from(nominal, {sets[s]}, frames_alone, options.sensors, solver);
+    std::vector<MeasuredSet> there_measured{sets[s]};
+    for (std::size_t other = 0; other < stations; ++other)
+      if (other != s && first_of_place(sets, other) == first_of_place(sets, s)) there_measured.push_back(sets[other]);
+    const auto registered = identified_from(nominal, std::move(there_measured), frames_alone, options.sensors, solver,
+                                            options.errors.tool_per_station);
     if (options.refuse_implausible) {
       if (!options.keep_outliers)
         require_plausible(ArmGeometry(nominal), sets[s], registered.rms_after, options.arm_name);
@@ -70,7 +74,8 @@ Calibration<Chain> fitted(const Framed<Chain>& nominal, const Measurements<Chain
   if (stations > 0 && options.refuse_implausible && !options.errors.tool_per_station) {
     const auto& registered = frames.models.front().identified();
     for (std::size_t s = stations; s < sets.size(); ++s)
-      require_plausible_set(ArmGeometry(registered.around(registered.chain())), sets[s]);
+      if (sets[s].reflector == sets.front().reflector)
+        require_plausible_set(ArmGeometry(registered.around(registered.chain())), sets[s]);
   }
 
   const double began = steady_seconds();

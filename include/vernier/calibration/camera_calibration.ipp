@@ -481,7 +481,12 @@ VERNIER_IMPL void CameraRun::report_images(const CameraProblem& problem, CameraR
     const View& view = *placed_[v].view;
     ImageError one{view.image, view.camera, view.board, static_cast<Index>(view.corners.size())};
     double squares = 0;
-    for (const Vector2& r : problem.residuals(placed_[v], poses[v])) squares += r.squaredNorm();
+    const std::vector<Vector2> residuals = problem.residuals(placed_[v], poses[v]);
+    for (std::size_t i = 0; i < residuals.size(); ++i) {
+      squares += residuals[i].squaredNorm();
+      const Vector2& pixel = view.pixels[i];
+      out.residuals.push_back({static_cast<Index>(v), pixel(0), pixel(1), residuals[i](0), residuals[i](1)});
+    }
     one.pixel_rms = std::sqrt(squares / static_cast<double>(one.corners));
     const VectorX errors = problem.board_errors(placed_[v], poses[v]);
     one.board_mean = errors.mean();
@@ -578,9 +583,25 @@ VERNIER_IMPL void CameraRun::report_unknowns(const CameraProblem& problem, Camer
   frames(problem.state.tools, false, out.in_flange, out.in_flange_std);
   for (std::size_t c = 0; c < problem.state.cameras.size(); ++c) {
     VectorX std = VectorX::Zero(Camera::num_parameters);
+    std::vector<Index> estimated;
+    const Index begin = at;
     for (Index k = 0; k < Camera::num_parameters; ++k)
-      if (problem.free.intrinsics[static_cast<std::size_t>(k)]) std(k) = std::sqrt(variance(at++));
+      if (problem.free.intrinsics[static_cast<std::size_t>(k)]) {
+        estimated.push_back(k);
+        std(k) = std::sqrt(variance(at++));
+      }
+    MatrixX covariance = MatrixX::Zero(Camera::num_parameters, Camera::num_parameters);
+    const auto count = static_cast<Index>(estimated.size());
+    for (Index r = 0; r < count && known; ++r)  // correlations of the larger, with these standard deviations
+      for (Index s = 0; s < count; ++s) {
+        const MatrixX& from = *larger(begin, count);
+        const Index row = estimated[static_cast<std::size_t>(r)], column = estimated[static_cast<std::size_t>(s)];
+        covariance(row, column) = from(begin + r, begin + s) /
+                                  std::sqrt(from(begin + r, begin + r) * from(begin + s, begin + s)) * std(row) *
+                                  std(column);
+      }
     out.camera_std.push_back(std);
+    out.camera_covariances.push_back(covariance);
   }
   if (problem.free.scale) out.board_scale_std = std::sqrt(variance(at++));
   out.cameras = problem.state.cameras;

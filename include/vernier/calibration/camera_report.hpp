@@ -31,6 +31,13 @@ struct ImageError {
   double tilt = 0;           ///< between the view and the board's normal [rad]
 };
 
+/// What is left of a corner.
+struct CornerResidual {
+  Index image = 0;                        ///< number of the view in `CameraReport::images`
+  double u = 0, v = 0;                    ///< where it was found [px]
+  double residual_u = 0, residual_v = 0;  ///< modelled minus found [px]
+};
+
 /// What one view alone says of the arm, with the intrinsics that were found.
 struct ImagePose {
   Index row = 0;       ///< of the joints, or of the poses of the flange
@@ -55,10 +62,11 @@ struct CameraReport {
   std::vector<std::string> board_names{};   ///< of the places of the board
   std::vector<Camera> cameras{};            ///< estimated, or as given
   std::vector<VectorX> camera_std{};        ///< standard deviations of the nine intrinsics; 0 for those that were held
-  Board board{};                            ///< as stated
-  double board_scale = 1;                   ///< lengths of the board in those that were stated
-  double board_scale_std = 0;               ///< its standard deviation
-  Vector3 board_bend{0, 0, 0};              ///< heights at half a diagonal from the middle: xx, xy, yy [m]
+  std::vector<MatrixX> camera_covariances{};  ///< of the nine intrinsics of each camera; 0 for those that were held
+  Board board{};                              ///< as stated
+  double board_scale = 1;                     ///< lengths of the board in those that were stated
+  double board_scale_std = 0;                 ///< its standard deviation
+  Vector3 board_bend{0, 0, 0};                ///< heights at half a diagonal from the middle: xx, xy, yy [m]
   /// What stands still, in the arm's base frame: base_T_camera of each camera, or base_T_board of each place.
   std::vector<Isometry3> in_base{};
   std::vector<Vector6> in_base_std{};  ///< standard deviations of shifts [m] and rotations [rad]
@@ -66,6 +74,7 @@ struct CameraReport {
   std::vector<Isometry3> in_flange{};
   std::vector<Vector6> in_flange_std{};        ///< likewise
   std::vector<ImageError> images{};            ///< in the order of the file
+  std::vector<CornerResidual> residuals{};     ///< of the corners of all images
   std::vector<ImagePose> poses{};              ///< of the views that determine one
   std::vector<CameraBlock> blocks{};           ///< in the order in which they were tried
   std::vector<std::string> without_row{};      ///< images without joints or pose of the flange

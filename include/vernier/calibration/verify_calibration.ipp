@@ -75,6 +75,33 @@ VERNIER_LOCAL ColumnTest test_columns(const WhitenedResiduals& of, const std::ve
   return {of.residual.squaredNorm() - residual.squaredNorm(), rank};
 }
 
+/// The part of a covariance by which it exceeds independent noise of one variance, along its axes.
+VERNIER_LOCAL MatrixX excess_over(const MatrixX& covariance, double variance) {
+  const SymmetricEigen axes = symmetric_eigen(covariance);
+  MatrixX out = MatrixX::Zero(covariance.rows(), covariance.cols());
+  for (Index k = 0; k < axes.values.size(); ++k) {
+    const VectorX axis = VERNIER_LATER(axes.vectors).col(k);
+    add_product(out, axis, VERNIER_LATER(axis).transpose(), (std::max)(0.0, axes.values(k) - variance));
+  }
+  return out;
+}
+
+/// Adds the noise of a row by which it is worse than the rows of the calibration, whose noise is in that of a visit.
+VERNIER_LOCAL void add_row_noise(const VerificationInput& input, Index row, Index values, Matrix6& visit) {
+  const MeasuredSet& data = input.data;
+  const Matrix6 relative = data.relative_covariance(row);
+  for (Index first = 0; first < values; first += 3) {
+    const double sigma = first == 0 ? data.sigma().length : data.sigma().angle,
+                 then = first == 0 ? input.estimate.position_sigma : input.estimate.orientation_sigma;
+    MatrixX own(3, 3);
+    for (Index c = 0; c < 3; ++c)
+      for (Index r = 0; r < 3; ++r) own(r, c) = sigma * sigma * relative(first + r, first + c);
+    own = excess_over(own, then * then);
+    for (Index c = 0; c < 3; ++c)
+      for (Index r = 0; r < 3; ++r) visit(first + r, first + c) += own(r, c);
+  }
+}
+
 /// Covariance of the residuals of some poses: that of the calibration's unknowns, which they share, and of each visit.
 VERNIER_LOCAL MatrixX residual_covariance(const VerificationInput& input, const VerifyOptions& options, Index values,
                                           std::vector<Matrix6>& visits) {
@@ -101,7 +128,8 @@ VERNIER_LOCAL MatrixX residual_covariance(const VerificationInput& input, const 
                orientation = excess(options.sensors.orientation_sigma, input.estimate.orientation_sigma);
   for (Index i = 0; i < n; ++i) {
     Matrix6& visit = visits[static_cast<std::size_t>(i)];
-    for (Index v = 0; v < 6; ++v) visit(v, v) += v < 3 ? position : orientation;
+    for (Index v = 0; v < 6 && !data.correlated(); ++v) visit(v, v) += v < 3 ? position : orientation;
+    if (data.correlated()) add_row_noise(input, i, values, visit);
     for (Index c = 0; c < values; ++c)
       for (Index r = 0; r < values; ++r) out(values * i + r, values * i + c) = visit(r, c);
   }

@@ -14,8 +14,11 @@ namespace vernier {
 
 /// Cameras and board around an arm.
 struct CameraSetup {
-  bool on_flange = true;                    ///< whether the flange carries the cameras; else it carries the board
-  std::vector<Camera> cameras{};            ///< intrinsics
+  bool on_flange = true;          ///< whether the flange carries the cameras; else it carries the board
+  std::vector<Camera> cameras{};  ///< intrinsics
+  /// Covariances of the nine intrinsics of each camera, in the order of `Camera::names`; zero for those that were held.
+  /// None where they are unknown.
+  std::vector<MatrixX> covariances{};
   std::vector<std::string> camera_names{};  ///< as many
   Board board{};                            ///< the printed board
   std::vector<std::string> board_names{};   ///< of the places of the board

@@ -33,9 +33,22 @@ struct PoseColumns {
   MatrixX payloads;      ///< n x 4 [kg, m], see `Dataset::payloads`; no rows where the file has none
   RowOrigin origin;      ///< lines of the rows
   std::vector<Matrix6> covariances{};  ///< [m, rad]; none where the file has none
+  std::vector<std::string> points{};   ///< reflector of each row; none where the file names none
 };
 VERNIER_API PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types,
                                           const CsvFormat& format);
+/// The rows of a file as samples.
+template <int N>
+Dataset<N> dataset_of(const PoseColumns& from) {
+  return Dataset<N>(from.values.leftCols<N>(), from.values.middleCols<3>(N),
+                    from.values.cols() > N + 3 ? PointRows(from.values.rightCols<3>()) : PointRows(0, 3))
+      .approached_from(from.previous)
+      .measured_at(from.times)
+      .at_temperatures(from.temperatures)
+      .carrying(from.payloads)
+      .with_covariances(from.covariances)
+      .from(from.origin);
+}
 /// The columns of a file of targets; what it lacks has no rows.
 struct TargetColumns {
   MatrixX joints;            ///< n x joints [rad, m]
@@ -55,13 +68,15 @@ VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows&
                                   const PointRows& orientations, const ConstMatrixRef& previous, const VectorX& times,
                                   const VectorX& temperatures, const MatrixX& payloads,
                                   std::span<const JointType> types, const ControllerMap& controller,
-                                  const std::vector<Matrix6>& covariances);
+                                  const std::vector<Matrix6>& covariances, const std::vector<std::string>& points = {});
+/// @throws DataError for rows of several reflectors
+VERNIER_API void require_one_point(const PoseColumns& columns, const std::string& path);
 
 }  // namespace detail
 
 /// Measured poses from a CSV file: columns q1_rad .. qN_rad (or _deg, _mrad; _mm, _m or _um for prismatic joints),
 /// x_mm, y_mm, z_mm (or _m, _um), optionally rx_rad, ry_rad, rz_rad (rotation vector, or _deg, _mrad), or a
-/// quaternion qw, qx, qy, qz, or a rotation matrix r11, r12 .. r33. Any column
+/// quaternion qw, qx, qy, qz, or a rotation matrix r11, r12 .. r33, or Euler angles as `format.euler` says. Any column
 /// order; other columns are not read, and `format.remark` is told their names; without it, a name like
 /// `X_mm` or `time_min` is refused. Accepted are blank lines, lines that end
 /// with CRLF or CR, a byte-order mark, and quotation marks around a cell. A column that is there twice, or in two
@@ -80,20 +95,13 @@ VERNIER_API std::string pose_text(const ConstMatrixRef& joints, const PointRows&
 /// @param path        the file
 /// @param joint_types where given, the columns of revolute joints must be angles and those of prismatic ones lengths
 /// @param format      how the file is written
-/// @throws DataError naming file, line and column
+/// @throws DataError naming file, line and column; for several reflectors, see `read_reflectors`
 template <int N>
 Dataset<N> read_dataset(const std::string& path, std::span<const JointType> joint_types = {},
                         const CsvFormat& format = {}) {
-  const auto [values, previous, times, temperatures, payloads, origin, covariances] =
-      detail::read_pose_columns(path, N, joint_types, format);
-  return Dataset<N>(values.leftCols<N>(), values.middleCols<3>(N),
-                    values.cols() > N + 3 ? PointRows(values.rightCols<3>()) : PointRows(0, 3))
-      .approached_from(previous)
-      .measured_at(times)
-      .at_temperatures(temperatures)
-      .carrying(payloads)
-      .with_covariances(covariances)
-      .from(origin);
+  const detail::PoseColumns columns = detail::read_pose_columns(path, N, joint_types, format);
+  detail::require_one_point(columns, path);
+  return detail::dataset_of<N>(columns);
 }
 
 /// Measured distances from a CSV file: columns q1 .. qN as in `read_dataset`, and distance_mm (or _m, _um).

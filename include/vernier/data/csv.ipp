@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "vernier/core/register_points.hpp"
 #include "vernier/core/same_value.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/csv_table.hpp"
+#include "vernier/data/detail/pose_values.hpp"
 
 namespace vernier::detail {
 
@@ -70,17 +70,6 @@ VERNIER_LOCAL bool has_joints(const CsvTable& table, std::string_view prefix) {
                      [&](std::string_view name) { return joint_of(name, prefix).has_value(); });
 }
 
-/// Columns x, y, z, and rx, ry, rz of a file that has any of these.
-VERNIER_LOCAL std::vector<CsvColumn> pose_columns(const CsvTable& table) {
-  std::vector<CsvColumn> columns;
-  for (const char* axis : {"x", "y", "z"}) columns.push_back(table.require_column(axis, quantities::coordinate));
-  if (table.find("rx", quantities::rotation_angle) || table.find("ry", quantities::rotation_angle) ||
-      table.find("rz", quantities::rotation_angle))
-    for (const char* axis : {"rx", "ry", "rz"})
-      columns.push_back(table.require_column(axis, quantities::rotation_angle));
-  return columns;
-}
-
 /// The values of a column, if the file has it.
 VERNIER_LOCAL std::optional<VectorX> values_of(const CsvTable& table, std::string_view stem, const Quantity& quantity) {
   const auto found = table.find(stem, quantity);
@@ -114,50 +103,6 @@ VERNIER_IMPL MatrixX read_joint_columns(const std::string& path, int joints, std
   MatrixX out =
       with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller)), format.controller);
   table.remark_unread();
-  return out;
-}
-
-/// Orientations as quaternions or matrices, as rotation vectors, n x 3; no rows where the file has neither.
-VERNIER_LOCAL MatrixX other_orientations(const CsvTable& table) {
-  std::vector<CsvColumn> quaternion, matrix;
-  for (const char* name : {"qw", "qx", "qy", "qz"})
-    if (auto found = table.find(name, quantities::covariance_entry)) quaternion.push_back(std::move(*found));
-  for (int r = 1; r <= 3; ++r)
-    for (int c = 1; c <= 3; ++c)
-      if (auto found = table.find(message('r', r, c), quantities::covariance_entry))
-        matrix.push_back(std::move(*found));
-  if (quaternion.empty() && matrix.empty()) return MatrixX(0, 3);
-  if (!quaternion.empty() && !matrix.empty())
-    table.fail_in_header("columns ", quaternion[0].name, " and ", matrix[0].name, " both give an orientation");
-  if (table.find("rx", quantities::rotation_angle))
-    table.fail_in_header("columns rx and ", (quaternion.empty() ? matrix : quaternion)[0].name,
-                         " both give an orientation");
-  if (!quaternion.empty() && quaternion.size() != 4)
-    table.fail_in_header("a quaternion needs the columns qw, qx, qy and qz");
-  if (!matrix.empty() && matrix.size() != 9)
-    table.fail_in_header("a rotation matrix needs the nine columns r11, r12 .. r33");
-  const MatrixX values = table.numbers(quaternion.empty() ? matrix : quaternion);
-  MatrixX out(values.rows(), 3);
-  for (Index i = 0; i < values.rows(); ++i) {
-    Matrix3 turn;
-    if (matrix.empty()) {
-      const Eigen::Quaterniond q(values(i, 0), values(i, 1), values(i, 2), values(i, 3));
-      if (!(std::abs(q.norm() - 1) < 0.01))
-        table.fail_in_row(i, quaternion[0], "a quaternion of norm ", q.norm(), ", must be 1");
-      turn = q.normalized().toRotationMatrix();
-    } else {
-      for (Index k = 0; k < 9; ++k) turn(k / 3, k % 3) = values(i, k);
-      const Matrix3 square = turn * turn.transpose();
-      double off = 0;
-      for (Index r = 0; r < 3; ++r)
-        for (Index c = 0; c < 3; ++c) off = (std::max)(off, std::abs(square(r, c) - (r == c ? 1 : 0)));
-      if (!(off < 1e-3) || !(turn.determinant() > 0))
-        table.fail_in_row(i, matrix[0], "the columns r11 to r33 are no rotation matrix");
-      turn = nearest_rotation(turn);
-    }
-    const Vector3 vector = log_so3(turn);
-    for (Index k = 0; k < 3; ++k) out(i, k) = vector(k);
-  }
   return out;
 }
 
@@ -202,19 +147,86 @@ VERNIER_LOCAL std::vector<Matrix6> covariances_of(const CsvTable& table, bool or
   return out;
 }
 
+/// Some rows of a matrix, which may have none.
+VERNIER_LOCAL MatrixX chosen_rows(const MatrixX& from, std::span<const Index> rows) {
+  MatrixX out(from.rows() > 0 ? static_cast<Index>(rows.size()) : 0, from.cols());
+  copy_rows(from, rows, out);
+  return out;
+}
+
+/// Repeats rows, values apart, one for each point of a line.
+VERNIER_LOCAL void choose_rows(PoseColumns& out, const std::vector<Index>& rows) {
+  out.previous = chosen_rows(out.previous, rows);
+  out.times = chosen_rows(out.times, rows);
+  out.temperatures = chosen_rows(out.temperatures, rows);
+  out.payloads = chosen_rows(out.payloads, rows);
+  std::vector<Matrix6> covariances;
+  for (const Index row : rows)
+    if (!out.covariances.empty()) covariances.push_back(out.covariances[static_cast<std::size_t>(row)]);
+  out.covariances = std::move(covariances);
+  out.origin = out.origin.rows(rows);
+}
+
+/// Names of the reflectors in a column `point`, one a row; none where the file has no such column.
+VERNIER_LOCAL std::vector<std::string> named_points(const CsvTable& table) {
+  const auto column = table.find("point", quantities::words);
+  if (!column) return {};
+  std::vector<std::string> names = table.texts(*column);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i].empty()) table.fail_in_row(static_cast<Index>(i), *column, "no name of a reflector");
+  return names;
+}
+
+/// Whether names of rows are those of reflectors: one at least is measured at two configurations.
+VERNIER_LOCAL bool names_reflectors(const CsvTable& table, const std::vector<std::string>& names, const MatrixX& joints,
+                                    bool oriented) {
+  std::map<std::string, std::vector<Index>> rows;  // of different configurations
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto row = static_cast<Index>(i);
+    std::vector<Index>& seen = rows[names[i]];
+    const auto same = [&](Index other) {
+      for (Index j = 0; j < joints.cols(); ++j)
+        if (!same_value(joints(row, j), joints(other, j))) return false;
+      return true;
+    };
+    if (seen.size() < 3 && std::none_of(seen.begin(), seen.end(), same)) seen.push_back(row);
+  }
+  if (rows.size() < 2) return true;
+  std::size_t most = 0;
+  for (const auto& [name, seen] : rows) most = (std::max)(most, seen.size());
+  if (most < 2) {
+    table.remark(": the column point names poses, each at one configuration; it is not read");
+    return false;
+  }
+  for (const auto& [name, seen] : rows)
+    if (seen.size() < 3)
+      table.fail_in_header("the reflector '", printable(name), "' is measured at ",
+                           counted(seen.size(), "configuration", "configurations"), ", it needs three or more");
+  if (oriented)
+    table.fail_in_header("several reflectors (column point) have no orientations; leave the columns of these out");
+  return true;
+}
+
+/// Points that are measured one after another at one configuration were approached from the same one.
+VERNIER_LOCAL void share_approach(PoseColumns& out, int joints) {
+  for (Index i = 1; i < out.values.rows(); ++i) {
+    bool same = out.points[static_cast<std::size_t>(i)] != out.points[static_cast<std::size_t>(i - 1)];
+    for (Index j = 0; j < joints && same; ++j)
+      same = same_value(out.values(i, j), out.values(i - 1, j)) &&
+             (!std::isfinite(out.previous(i, j)) || same_value(out.previous(i, j), out.values(i - 1, j)));
+    for (Index j = 0; j < joints && same; ++j) out.previous(i, j) = out.previous(i - 1, j);
+  }
+}
+
 VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types,
                                            const CsvFormat& format) {
   const CsvTable table(path, format);
-  std::vector<CsvColumn> columns = joint_columns(table, joints, types, format.controller);
-  for (CsvColumn& column : pose_columns(table)) columns.push_back(std::move(column));
-  PoseColumns out{with_chain_joints(table.numbers(columns), format.controller), {}, {}, {}, {}, table.origin(), {}};
-  if (const MatrixX turns = other_orientations(table); turns.rows() > 0) {
-    out.values.conservativeResize(Eigen::NoChange, joints + 6);
-    for (Index c = 0; c < 3; ++c)
-      for (Index i = 0; i < turns.rows(); ++i) out.values(i, joints + 3 + c) = turns(i, c);
-  }
-  out.covariances = covariances_of(table, out.values.cols() > joints + 3);
-  const Index n = out.values.rows();
+  const MatrixX chain_joints =
+      with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller)), format.controller);
+  const PoseValues poses = pose_values(table, format.euler);
+  const Index n = chain_joints.rows(), values = poses.values.cols();
+  PoseColumns out{MatrixX(poses.values.rows(), joints + values), {}, {}, {}, {}, table.origin(), {}, poses.points};
+  out.covariances = covariances_of(table, values > 3);
   const VectorX times = values_of(table, "time", quantities::time_of_measuring).value_or(VectorX());
   out.times = times.size() > 0 ? times : VectorX(VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)));
   out.temperatures = values_of(table, "temperature", quantities::temperature).value_or(VectorX());
@@ -231,9 +243,28 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   out.previous = has_joints(table, "from_")
                      ? with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller, "from_")),
                                          format.controller)
-                     : approach_by_order(table, MatrixX(VERNIER_LATER(out.values).leftCols(joints)), times);
+                     : approach_by_order(table, chain_joints, times);
+  MatrixX of_rows = chain_joints;
+  if (poses.points.empty()) {
+    out.points = named_points(table);
+  } else {
+    of_rows = chosen_rows(chain_joints, poses.rows);
+    choose_rows(out, poses.rows);
+  }
+  for (Index k = 0; k < joints + values; ++k)
+    for (Index i = 0; i < of_rows.rows(); ++i)
+      out.values(i, k) = k < joints ? of_rows(i, k) : poses.values(i, k - joints);
+  if (!out.points.empty() && !names_reflectors(table, out.points, of_rows, values > 3)) out.points.clear();
+  if (!out.points.empty()) share_approach(out, joints);
   table.remark_unread();
   return out;
+}
+
+VERNIER_IMPL void require_one_point(const PoseColumns& columns, const std::string& path) {
+  for (const std::string& name : columns.points)
+    if (name != columns.points.front())
+      throw DataError(message(path, ": several reflectors ('", printable(columns.points.front()), "', '",
+                              printable(name), "', ..); only `calibrate` takes these, here one is needed"));
 }
 
 VERNIER_IMPL TargetColumns read_target_columns(const std::string& path, int joints, std::span<const JointType> types,
@@ -245,7 +276,7 @@ VERNIER_IMPL TargetColumns read_target_columns(const std::string& path, int join
   if (!posed || has_joints(table, ""))
     out.joints =
         with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller)), format.controller);
-  if (posed) out.poses = table.numbers(pose_columns(table));
+  if (posed) out.poses = oriented_values(table, format.euler);
   if (const auto move = table.find("move", quantities::words)) {
     const std::vector<std::string> moves = table.texts(*move);
     for (std::size_t i = 0; i < moves.size(); ++i) {
@@ -275,7 +306,7 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const Poi
                                    const PointRows& orientations, const ConstMatrixRef& chain_previous,
                                    const VectorX& times, const VectorX& temperatures, const MatrixX& payloads,
                                    std::span<const JointType> chain_types, const ControllerMap& controller,
-                                   const std::vector<Matrix6>& covariances) {
+                                   const std::vector<Matrix6>& covariances, const std::vector<std::string>& points) {
   demand(chain_types.empty() || chain_types.size() == static_cast<std::size_t>(chain_joints.cols()),
          "write_dataset: ", chain_types.size(), " types of joints for ", chain_joints.cols(), " joints");
   const MatrixX joints = controller.to_controller(chain_joints), previous = controller.to_controller(chain_previous);
@@ -293,7 +324,7 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const Poi
     in_order = in_order && follows;
     counted = counted && same_value(times(i), static_cast<double>(i));
   }
-  std::string out;
+  std::string out = points.empty() ? "" : "point,";
   for (Index j = 0; j < joints.cols() && !in_order; ++j) out += "from_" + name(j);
   if (!counted) out += "time_s,";
   if (temperatures.size() > 0) out += "temperature_c,";
@@ -309,6 +340,7 @@ VERNIER_IMPL std::string pose_text(const ConstMatrixRef& chain_joints, const Poi
   for (Index j = 0; j < joints.cols(); ++j) out += name(j);
   out += oriented ? "x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad\n" : "x_mm,y_mm,z_mm\n";
   for (Index i = 0; i < joints.rows(); ++i) {
+    if (!points.empty()) out += points[static_cast<std::size_t>(i)] + ',';
     for (Index j = 0; j < joints.cols() && !in_order; ++j)
       out += message(std::isfinite(previous(i, j)) ? previous(i, j) : joints(i, j), ',');
     if (!counted) out += message(times(i), ',');
@@ -348,10 +380,9 @@ VERNIER_IMPL CsvText read_csv_text(const std::string& path, const CsvFormat& for
 VERNIER_IMPL LabelledPoses read_labelled_poses(const std::string& path, std::initializer_list<const char*> labels,
                                                std::initializer_list<const char*> optional, const CsvFormat& format) {
   const detail::CsvTable table(path, format);
-  const std::vector<detail::CsvColumn> columns = detail::pose_columns(table);
+  const MatrixX values = detail::oriented_values(table, format.euler);
   LabelledPoses out;
-  out.oriented = columns.size() > 3;
-  const MatrixX values = table.numbers(columns);
+  out.oriented = values.cols() > 3;
   out.labels.setZero(values.rows(), static_cast<Index>(labels.size() + optional.size()));
   Index label = 0;
   for (const auto& names : {labels, optional})

@@ -20,6 +20,10 @@ struct CsvFormat {
   /// back. Empty: nobody is told, and a file with a column that is not read, but differs from a known one by case, by
   /// blanks and brackets or by its unit alone, is refused.
   std::function<void(const std::string&)> remark{};
+  /// Orientations are Euler angles about these three axes, in the order of turning: capital letters for axes that turn
+  /// along ("ZYX"), small ones for axes that stay ("xyz"). Columns rx, ry and rz are the angles about x, y and z, or
+  /// euler1, euler2 and euler3 those in the order of turning, each with a unit. Empty: there are none.
+  std::string euler{};
   /// Joint values of the file are those of this controller. Readers return those of the chain.
   ControllerMap controller{};
 };

@@ -37,8 +37,9 @@ VERNIER_IMPL ErrorModelEstimate ErrorModelEstimate::of_station(int station) cons
   std::vector<Index> kept;
   for (std::size_t k = 0; k < arm.geometric().size(); ++k) {
     GeometricUnknown u = arm.geometric()[k];
-    if (u.station >= 0 && u.station != station) continue;
+    if (!u.acts_on(station)) continue;
     u.station = -1;
+    u.shared_with.clear();
     unknowns.push_back(u);
     kept.push_back(static_cast<Index>(k));
   }

@@ -4,6 +4,7 @@
 /// @file
 /// The unknowns of an arm seen from one or more stations: which there are, their values, and their effect on a pose.
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,13 @@ struct GeometricUnknown {
   double scale = 1;      ///< unit in which it is estimated: the expected size of its error [m, rad]
   double precision = 0;  ///< of a prior around its start, in that unit: an inverse variance; 0 for none
   bool thermal = false;  ///< the change of the parameter with temperature [m/K, rad/K], not the parameter itself
+  std::vector<int> shared_with{};  ///< further stations that have the same frame
+
+  /// Whether it acts on a station.
+  bool acts_on(int of_station) const {
+    return station < 0 || station == of_station ||
+           std::find(shared_with.begin(), shared_with.end(), of_station) != shared_with.end();
+  }
 };
 
 /// Geometric unknowns and coefficients of joint errors. Estimation is in steps of their scales: geometry first, then

@@ -38,7 +38,7 @@ VERNIER_IMPL void ArmParameterisation::set_precisions(const VectorX& precisions)
 VERNIER_IMPL VectorX ArmParameterisation::thermal_rates(int station) const {
   VectorX out;
   for (std::size_t k = 0; k < thermal_rates_.size(); ++k) {
-    if (!unknowns_[k].thermal || (unknowns_[k].station >= 0 && unknowns_[k].station != station)) continue;
+    if (!unknowns_[k].thermal || !unknowns_[k].acts_on(station)) continue;
     if (out.size() == 0) out.setZero(geometry(station).num_parameters());
     out(unknowns_[k].parameter) = thermal_rates_[k];
   }
@@ -89,7 +89,7 @@ VERNIER_IMPL void ArmParameterisation::move(const VectorX& steps) {
     ArmGeometry& arm = arms_[static_cast<std::size_t>(s)];
     VectorX p = arm.parameters();
     for (std::size_t k = 0; k < unknowns_.size(); ++k)
-      if (!unknowns_[k].thermal && (unknowns_[k].station < 0 || unknowns_[k].station == s))
+      if (!unknowns_[k].thermal && unknowns_[k].acts_on(s))
         p(unknowns_[k].parameter) += unknowns_[k].scale * steps(static_cast<Index>(k));
     arm = arm.with_parameters(p);
   }
@@ -206,7 +206,7 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
     for (std::size_t k = 0; k < unknowns_.size(); ++k) {
       double* column = rows.dense.data() + 6 * k;
       const double share = unknowns_[k].thermal ? warmer.size() > 0 ? warmer(i) : 0 : 1;
-      if (unknowns_[k].station < 0 || unknowns_[k].station == station)
+      if (unknowns_[k].acts_on(station))
         copy(unknowns_[k].parameter, share * unknowns_[k].scale, column);
       else
         std::fill_n(column, 6, 0.0);

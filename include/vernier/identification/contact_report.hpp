@@ -34,6 +34,11 @@ struct ContactReport : IdentificationReport {
   VectorX singular_values{};  ///< of touches that lie on their objects, with respect to all unknowns in steps of
                               ///< expected sizes, largest first
   Index unobservable = 0;     ///< number of unobservable directions: zero singular values
+  /// Errors that touches share, in the covariance: places of sockets and faces, radii of balls [m]; 0 where unknown.
+  double object_sigma = 0;
+  double joint_sigma = 0;  ///< likewise: of a joint, once a turn [rad]
+  /// What the covariance of the estimates would be if touches shared no errors, in the order of `covariance`.
+  MatrixX independent_covariance{};
   Index missing = 0;  ///< how many directions of the arm measured positions at the same joints would determine, but
                       ///< these contacts do not, apart from base and scale; above 0: touch more, or other, objects
 

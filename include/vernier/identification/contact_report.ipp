@@ -42,6 +42,12 @@ VERNIER_IMPL std::string ContactReport::summary() const {
            fixed_digits(o.rms * 1e3, 4) + " mm\n";
   out += "Parameters estimated: " + std::to_string(free.size()) + ", condition " +
          (std::isfinite(condition) ? fixed_digits(condition, 0) : std::string("infinite")) + ".\n";
+  if (object_sigma > 0) {
+    out += "Standard deviations include errors that touches share: " + fixed_digits(object_sigma * 1e3, 3) +
+           " mm of each object";
+    if (joint_sigma > 0) out += ", and " + fixed_digits(joint_sigma * 1e3, 3) + " mrad of each joint once a turn";
+    out += ".\n";
+  }
   if (const auto weak = names(ParameterState::weak); !weak.empty())
     out += "Weakly determined, held near nominal by their priors: " + comma_list(weak) + ".\n";
   out += "Contacts do not observe (" + std::to_string(unobservable) + " of " + std::to_string(singular_values.size()) +

@@ -140,13 +140,19 @@ VERNIER_IMPL nlohmann::ordered_json setup_to_json(const CameraSetup& setup) {
   const auto& carried = setup.on_flange ? setup.camera_names : setup.board_names;
   nlohmann::ordered_json out{{"mount", setup.on_flange ? "flange" : "fixed"}, {"board", board_to_json(setup.board)}};
   for (const Camera& camera : setup.cameras) out["intrinsics"].push_back(camera_to_json(camera));
+  for (const MatrixX& covariance : setup.covariances) {
+    nlohmann::ordered_json triangle = nlohmann::ordered_json::array();
+    for (Index r = 0; r < covariance.rows(); ++r)
+      for (Index c = r; c < covariance.cols(); ++c) triangle.push_back(covariance(r, c));
+    out["intrinsics_covariance"].push_back(std::move(triangle));
+  }
   out["in_base"] = named_poses(standing, setup.in_base);
   out["in_flange"] = named_poses(carried, setup.in_flange);
   return out;
 }
 
 VERNIER_IMPL CameraSetup setup_from_json(const JsonNode& node) {
-  node.allow_only({"mount", "board", "intrinsics", "in_base", "in_flange"});
+  node.allow_only({"mount", "board", "intrinsics", "intrinsics_covariance", "in_base", "in_flange"});
   CameraSetup out;
   const std::string mount = node.at("mount").text();
   if (mount != "flange" && mount != "fixed") node.at("mount").fail("must be flange or fixed");
@@ -154,6 +160,20 @@ VERNIER_IMPL CameraSetup setup_from_json(const JsonNode& node) {
   out.board = board_from_json(node.at("board"));
   const JsonNode cameras = node.at("intrinsics");
   for (std::size_t k = 0; k < cameras.size(); ++k) out.cameras.push_back(camera_from_json(cameras.at(k)));
+  if (node.has("intrinsics_covariance")) {
+    const JsonNode covariances = node.at("intrinsics_covariance");
+    constexpr Index n = Camera::num_parameters;
+    if (covariances.size() != out.cameras.size()) covariances.fail("as many covariances as intrinsics are needed");
+    for (std::size_t k = 0; k < covariances.size(); ++k) {
+      const VectorX triangle = covariances.at(k).numbers(static_cast<std::size_t>(n * (n + 1) / 2));
+      MatrixX& one = out.covariances.emplace_back(n, n);
+      Index at = 0;
+      for (Index r = 0; r < n; ++r)
+        for (Index c = r; c < n; ++c) one(r, c) = one(c, r) = triangle(at++);
+      for (Index r = 0; r < n; ++r)
+        if (!(one(r, r) >= 0)) covariances.at(k).fail("a variance must not be negative");
+    }
+  }
   out.in_base = poses_of(node.at("in_base"), out.on_flange ? out.board_names : out.camera_names);
   out.in_flange = poses_of(node.at("in_flange"), out.on_flange ? out.camera_names : out.board_names);
   if (out.cameras.size() != out.camera_names.size()) node.fail("as many intrinsics as cameras are needed");

@@ -47,9 +47,12 @@ class MeasuredSet {
     validate();
   }
 
-  std::string name;    ///< how messages name it
-  MatrixX joints;      ///< n x joints [rad, m]
-  MatrixX previous{};  ///< joint values from which each was approached; no rows, or not finite, where unknown
+  std::string name;  ///< how messages name it
+  /// Where the sensor stands: sets that locate the base from one place have one base frame. Empty: a place of its own.
+  std::string place{};
+  std::string reflector{};  ///< which reflector was measured: each has a tool of its own. Empty: the tool point
+  MatrixX joints;           ///< n x joints [rad, m]
+  MatrixX previous{};       ///< joint values from which each was approached; no rows, or not finite, where unknown
   /// Joint values of the pose in whose tool frame each pose is seen: measurements between two configurations. No rows:
   /// poses are seen in the sensor's frame.
   MatrixX seen_from{};
@@ -117,6 +120,8 @@ class MeasuredSet {
                     { sensor.with(sensors) } -> std::same_as<S>;
                   }) {
       MeasuredSet out(set.name, set.joints, static_cast<const S*>(set.sensor_.get())->with(sensors));
+      out.place = set.place;
+      out.reflector = set.reflector;
       out.previous = set.previous;
       out.seen_from = set.seen_from;
       out.times = set.times;
@@ -152,6 +157,15 @@ class MeasuredSet {
   const std::vector<Matrix6>* covariances_ = nullptr;
   Matrix3 turned_ = Matrix3::Identity();  // half a turn, or none: takes the sensor's frame to the set's
 };
+
+namespace detail {
+
+/// The first set whose base frame a set has: of the same place.
+VERNIER_API std::size_t first_of_place(std::span<const MeasuredSet> sets, std::size_t set);
+/// The first set whose tool a set has: of the same point, or itself where each has its own.
+VERNIER_API std::size_t first_of_point(std::span<const MeasuredSet> sets, std::size_t set, bool own_tools);
+
+}  // namespace detail
 
 }  // namespace vernier
 

@@ -96,4 +96,20 @@ VERNIER_IMPL MeasuredSet MeasuredSet::at_joints(MatrixX other) const {
   return out;
 }
 
+namespace detail {
+
+VERNIER_IMPL std::size_t first_of_place(std::span<const MeasuredSet> sets, std::size_t set) {
+  for (std::size_t s = 0; s < set && !sets[set].place.empty() && sets[set].locates(); ++s)
+    if (sets[s].place == sets[set].place && sets[s].locates()) return s;
+  return set;
+}
+
+VERNIER_IMPL std::size_t first_of_point(std::span<const MeasuredSet> sets, std::size_t set, bool own_tools) {
+  for (std::size_t s = 0; s < set && !own_tools; ++s)
+    if (sets[s].reflector == sets[set].reflector) return s;
+  return set;
+}
+
+}  // namespace detail
+
 }  // namespace vernier

@@ -82,13 +82,17 @@ class Measurements {
   /// Poses from a further station, which has a base frame of its own.
   /// @param poses of the station
   /// @param name  how messages call it; by default its file
-  Measurements& add(Dataset<N> poses, std::string name = {}) {
+  /// @param place where it stands, see `MeasuredSet::place`
+  /// @param reflector which one it measured, see `MeasuredSet::reflector`
+  Measurements& add(Dataset<N> poses, std::string name = {}, std::string place = {}, std::string reflector = {}) {
     name = detail::set_name(std::move(name), poses.origin(), "station", poses_.size() + 1);
     MeasuredSet set =
         poses.has_orientations()
             ? MeasuredSet(std::move(name), poses.joints(), oriented(poses))
             : MeasuredSet(std::move(name), poses.joints(),
                           PositionSensor(poses.positions(), SensorModel{}.position_sigma, poses.covariances()));
+    set.place = std::move(place);
+    set.reflector = std::move(reflector);
     set.previous = poses.previous();
     set.times = poses.times();
     set.temperatures = poses.temperatures();
@@ -188,7 +192,8 @@ class Measurements {
   Measurements with_poses(std::vector<Dataset<N>> poses) const {
     demand(poses.size() == poses_.size(), "with_poses: ", poses.size(), " sets of poses for ", poses_.size());
     Measurements out;
-    for (std::size_t s = 0; s < poses.size(); ++s) out.add(std::move(poses[s]), sets_[s].name);
+    for (std::size_t s = 0; s < poses.size(); ++s)
+      out.add(std::move(poses[s]), sets_[s].name, sets_[s].place, sets_[s].reflector);
     out.sets_.insert(out.sets_.end(), sets_.begin() + static_cast<std::ptrdiff_t>(poses_.size()), sets_.end());
     return out;
   }

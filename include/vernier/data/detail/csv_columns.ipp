@@ -13,27 +13,19 @@ struct ColumnStem {
   std::string_view stem;
   const Quantity& quantity;
 };
-inline constexpr std::array<ColumnStem, 21> column_stems{{{"sx", quantities::standard_length},
-                                                          {"sy", quantities::standard_length},
-                                                          {"sz", quantities::standard_length},
-                                                          {"srx", quantities::standard_angle},
-                                                          {"sry", quantities::standard_angle},
-                                                          {"srz", quantities::standard_angle},
-                                                          {"x", quantities::coordinate},
-                                                          {"y", quantities::coordinate},
-                                                          {"z", quantities::coordinate},
-                                                          {"rx", quantities::rotation_angle},
-                                                          {"ry", quantities::rotation_angle},
-                                                          {"rz", quantities::rotation_angle},
-                                                          {"distance", quantities::measured_distance},
-                                                          {"radius", quantities::gauge_length},
-                                                          {"offset", quantities::gauge_length},
-                                                          {"time", quantities::time_of_measuring},
-                                                          {"temperature", quantities::temperature},
-                                                          {"payload_x", quantities::gauge_length},
-                                                          {"payload_y", quantities::gauge_length},
-                                                          {"payload_z", quantities::gauge_length},
-                                                          {"payload", quantities::payload}}};
+inline constexpr std::array<ColumnStem, 24> column_stems{
+    {{"euler1", quantities::rotation_angle},  {"euler2", quantities::rotation_angle},
+     {"euler3", quantities::rotation_angle},  {"sx", quantities::standard_length},
+     {"sy", quantities::standard_length},     {"sz", quantities::standard_length},
+     {"srx", quantities::standard_angle},     {"sry", quantities::standard_angle},
+     {"srz", quantities::standard_angle},     {"x", quantities::coordinate},
+     {"y", quantities::coordinate},           {"z", quantities::coordinate},
+     {"rx", quantities::rotation_angle},      {"ry", quantities::rotation_angle},
+     {"rz", quantities::rotation_angle},      {"distance", quantities::measured_distance},
+     {"radius", quantities::gauge_length},    {"offset", quantities::gauge_length},
+     {"time", quantities::time_of_measuring}, {"temperature", quantities::temperature},
+     {"payload_x", quantities::gauge_length}, {"payload_y", quantities::gauge_length},
+     {"payload_z", quantities::gauge_length}, {"payload", quantities::payload}}};
 
 /// Names without unit that a reader knows.
 inline constexpr std::array<std::string_view, 7> read_names{"segment",   "move",       "pose", "cycle",
@@ -84,8 +76,16 @@ VERNIER_IMPL std::optional<int> joint_of(std::string_view name, std::string_view
   return known ? std::optional<int>(joint.number) : std::nullopt;
 }
 
+/// Whether a name is that of a coordinate of one of several points of a line: x1_mm.
+VERNIER_LOCAL bool coordinate_of_point(std::string_view name) {
+  if (name.empty() || name[0] < 'x' || name[0] > 'z') return false;
+  const std::size_t end = (std::min)(name.find_first_not_of("0123456789", 1), name.size());
+  return end > 1 && std::any_of(length_units.begin(), length_units.end(),
+                                [&](const Quantity::Unit& unit) { return unit.first == name.substr(end); });
+}
+
 VERNIER_IMPL bool known_quantity(std::string_view name) {
-  if (joint_of(name, "") || joint_of(name, "from_")) return true;
+  if (joint_of(name, "") || joint_of(name, "from_") || coordinate_of_point(name)) return true;
   for (const auto& [stem, quantity] : column_stems)
     for (const auto& [unit, size] : quantity.units)
       if (name.size() == stem.size() + unit.size() && name.starts_with(stem) && name.ends_with(unit)) return true;

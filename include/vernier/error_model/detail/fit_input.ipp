@@ -8,6 +8,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/error_model/detail/fit_input.hpp"
 #include "vernier/identification/detail/contact_frames.hpp"
+#include "vernier/identification/detail/frame_sharing.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/identification/identifiable_parameters.hpp"
 
@@ -17,7 +18,11 @@ VERNIER_IMPL void ErrorModelInput::place() {
   arms.clear();
   for (MeasuredSet& set : sets) {
     demand(set.size() >= 1, "fit_error_model: ", set.name, " has no measurements");
-    arms.push_back(sets.size() == 1 ? identified : placed(identified, set));
+    const std::size_t s = arms.size(), first = first_of_place(sets, s);
+    if (first != s)
+      arms.push_back(starting_frames(arms[first], set, false, set.reflector != sets[first].reflector));
+    else
+      arms.push_back(sets.size() == 1 ? identified : placed(identified, set));
     require_spread(arms.back(), set);
   }
 }
@@ -35,13 +40,17 @@ VERNIER_IMPL std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelIn
     // thirty expected sizes do not affect what is determined
     const double deviation = std::isfinite(p.prior_std) ? p.prior_std / p.scale : 30;
     const double precision = of_chain ? input.identification.residual_variance / (deviation * deviation) : 0;
-    const bool own = stations > 1 && (k < 6 || (options.tool_per_station && k >= chain_end));  // a base, or a tool
-    if (!own) {
+    if (of_chain) {
       out.push_back({k, -1, p.scale, precision});
       continue;
     }
-    const auto last = k < 6 ? locating : stations;
-    for (std::size_t s = 0; s < last; ++s) out.push_back({k, static_cast<int>(s), p.scale, precision});
+    for (GeometricUnknown& one :
+         frame_of_sets(input.sets, k < 6, options.tool_per_station, k < 6 ? locating : stations)) {
+      one.parameter = k;
+      one.scale = p.scale;
+      one.precision = precision;
+      out.push_back(std::move(one));
+    }
   }
   for (std::size_t s = locating; s < stations && stations > 1; ++s)  // frames of objects and fixed points
     for (const Index k : frame_unknowns(input.sets[s]))

@@ -47,7 +47,8 @@ VERNIER_IMPL VectorX errors_of_left_out_sessions(const ModelSelection& model, co
   const CalibrationProblem& problem = model.problem;
   std::vector<std::vector<Index>> sessions(problem.sets().size());
   for (Index b = 0; b < problem.num_blocks(); ++b)
-    if (problem.set_of(b).locates()) sessions[static_cast<std::size_t>(problem.station_index(b))].push_back(b);
+    if (problem.set_of(b).locates())
+      sessions[problem.place_of(static_cast<std::size_t>(problem.station_index(b)))].push_back(b);
   std::erase_if(sessions, [](const std::vector<Index>& blocks) { return blocks.empty(); });
   constexpr std::size_t registering = 15, fewest = 2 * registering;
   for (const std::vector<Index>& blocks : sessions)

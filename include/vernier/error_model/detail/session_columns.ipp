@@ -20,7 +20,10 @@ VERNIER_IMPL SessionColumns::SessionColumns(const ModelSelection& model)
   const CalibrationProblem& problem = model.problem;
   std::vector<Index> number;  // of each set
   Index sets = 0;
-  for (const SessionDrift& drift : problem.drift) number.push_back(drift.empty() ? -1 : sets++);
+  for (std::size_t s = 0; s < problem.drift.size(); ++s) {
+    const std::size_t first = problem.place_of(s);
+    number.push_back(problem.drift[s].empty() ? -1 : first != s ? number[first] : sets++);
+  }
   added_ = sets * size_ * half_periods;
   for (Index b = 0; b < problem.num_blocks(); ++b) {
     const auto s = static_cast<std::size_t>(problem.station_index(b));

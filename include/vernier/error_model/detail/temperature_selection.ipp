@@ -71,7 +71,7 @@ VERNIER_IMPL bool add_temperature(ModelSelection& model, double expansion) {
     constexpr double shortest = 0.3;  // a link of no length has bearings and a housing [m]
     const double size = is_length(u.parameter, before.geometry(0).joints()) ? (std::max)(shortest, std::abs(value)) : 1;
     added.push_back(static_cast<Index>(unknowns.size()));
-    unknowns.push_back({u.parameter, u.station, expansion * size, 1, true});
+    unknowns.push_back({u.parameter, u.station, expansion * size, 1, true, u.shared_with});
   }
   problem.reference_temperature = mean;
   problem.arm.set_geometric(std::move(unknowns));

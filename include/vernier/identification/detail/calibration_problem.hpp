@@ -64,7 +64,9 @@ class CalibrationProblem {
   };
   VERNIER_API Temperatures temperatures() const;
 
-  /// Lets the bases of sets that locate them drift from now on, from no motion.
+  /// The first set with the base of a set.
+  std::size_t place_of(std::size_t set) const { return first_of_place(sets_, set); }
+  /// Lets the bases of sets that locate them drift from now on, from no motion; those of one place together.
   /// @param rows_per_knot number of poses from one knot to the next, on average
   VERNIER_API void start_drift(Index rows_per_knot);
   /// Lets the joints' zeros drift along, from no change.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -45,7 +46,8 @@ VERNIER_IMPL BlockSystem CalibrationProblem::system() const {
   out.poses = poses_;
   if (drift.empty()) return out;
   out.local_size = drift_scale_.size();
-  for (const SessionDrift& of_station : drift) out.local_states += of_station.knots.cols();
+  for (std::size_t s = 0; s < drift.size(); ++s)
+    if (place_of(s) == s) out.local_states += drift[s].knots.cols();
   return out;
 }
 
@@ -92,15 +94,32 @@ VERNIER_IMPL void CalibrationProblem::start_drift(Index rows_per_knot) {
   first_state_.assign(sets_.size(), 0);
   Index states = 0;
   for (std::size_t s = 0; s < sets_.size(); ++s) {
-    const MeasuredSet& set = sets_[s];
     first_state_[s] = states;
-    if (!set.locates() || set.times.size() == 0) continue;
-    const Index intervals = std::max<Index>(1, set.size() / rows_per_knot);
-    const double begin = VERNIER_LATER(set.times).minCoeff(), end = VERNIER_LATER(set.times).maxCoeff();
-    if (!(end > begin)) continue;
-    const Vector3 centre = set.positions() != nullptr
-                               ? centroid(*set.positions())
-                               : centroid(positions_of(arm.poses(static_cast<int>(s), set.joints)));
+    if (!sets_[s].locates()) continue;
+    if (const std::size_t first = place_of(s); first != s) {
+      first_state_[s] = first_state_[first];
+      drift[s] = drift[first];
+      continue;
+    }
+    Index rows = 0;
+    double begin = std::numeric_limits<double>::infinity(), end = -begin;
+    bool timed = true;
+    Vector3 sum = Vector3::Zero();
+    for (std::size_t of = s; of < sets_.size(); ++of) {
+      const MeasuredSet& set = sets_[of];
+      if (!set.locates() || place_of(of) != s) continue;
+      timed = timed && set.times.size() > 0;
+      if (!timed) break;
+      begin = (std::min)(begin, VERNIER_LATER(set.times).minCoeff());
+      end = (std::max)(end, VERNIER_LATER(set.times).maxCoeff());
+      sum += static_cast<double>(set.size()) *
+             (set.positions() != nullptr ? centroid(*set.positions())
+                                         : centroid(positions_of(arm.poses(static_cast<int>(of), set.joints))));
+      rows += set.size();
+    }
+    if (!timed || !(end > begin)) continue;
+    const Index intervals = std::max<Index>(1, rows / rows_per_knot);
+    const Vector3 centre = sum / static_cast<double>(rows);
     drift[s] = {begin, (end - begin) / static_cast<double>(intervals), centre, {}};
     drift[s].knots.setZero(6, intervals + 1);
     states += intervals + 1;
@@ -134,7 +153,7 @@ VERNIER_IMPL std::vector<LocalPrior> CalibrationProblem::drift_priors() const {
   for (Index k = 0; k < walk.cols(); ++k) walk(k, k) = k < 6 ? drift_precision : joint_drift_precision;
   const MatrixX anchor = 0.01 * walk, coupling = -1.0 * walk;
   for (std::size_t s = 0; s < drift.size(); ++s)
-    for (Index k = 0; k < drift[s].knots.cols(); ++k) {
+    for (Index k = 0; k < drift[s].knots.cols() && place_of(s) == s; ++k) {
       const Index state = first_state_[s] + k;
       out.push_back({state, state, anchor});
       if (k == 0) continue;

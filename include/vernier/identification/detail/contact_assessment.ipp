@@ -10,6 +10,7 @@
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/identification/detail/contact_assessment.hpp"
 #include "vernier/identification/detail/contact_frames.hpp"
+#include "vernier/identification/detail/shared_touch_errors.hpp"
 #include "vernier/identification/identifiable_parameters.hpp"
 #include "vernier/least_squares/estimate_covariance.hpp"
 #include "vernier/measurements/position_sensor.hpp"
@@ -114,6 +115,19 @@ VERNIER_LOCAL void add_contact_covariance(const ContactProblem& solved, ContactR
   if (unit.inverse.size() > 0) explained -= diagonal_of(unit.inverse).dot(precisions);
   const double freedom = static_cast<double>(rows.residuals.size()) - explained + (problem.prior ? 1 : 0);
   const double variance = freedom >= 1 ? rows.residuals.squaredNorm() / freedom : 1;
+  SharedTouchErrors shared;
+  if (unit.inverse.size() > 0 && freedom >= 1) shared = shared_touch_errors(solved, unit.inverse, variance);
+  const bool known = shared.covariance.size() > 0;
+  report.object_sigma = known ? shared.object : 0;
+  report.joint_sigma = known ? shared.joint : 0;
+  MatrixX covariance;
+  if (known) {
+    const VectorX row_variance = VectorX::Constant(stack.rows(), shared.variance);
+    covariance = EstimateCovariance(stack, row_variance, precisions, variance * variances).covariance;
+    covariance += shared.covariance;
+  } else if (unit.inverse.size() > 0) {
+    covariance = variance * unit.inverse;
+  }
   report.rank = unit.rank;
   report.condition = unit.condition;
   if (unit.singular_values.size() > 0)
@@ -124,6 +138,7 @@ VERNIER_LOCAL void add_contact_covariance(const ContactProblem& solved, ContactR
     if (estimated[k].station < 0) of_arm.push_back(static_cast<Index>(k));
   if (unit.inverse.size() > 0)
     report.covariance.resize(static_cast<Index>(of_arm.size()), static_cast<Index>(of_arm.size()));
+  report.independent_covariance = report.covariance;
   for (std::size_t i = 0; i < of_arm.size(); ++i) {
     const GeometricUnknown& u = estimated[static_cast<std::size_t>(of_arm[i])];
     ParameterEstimate& p = report.parameters[static_cast<std::size_t>(u.parameter)];
@@ -131,10 +146,12 @@ VERNIER_LOCAL void add_contact_covariance(const ContactProblem& solved, ContactR
     p.state = ParameterState::identified;
     if (u.precision > 0) p.prior_std = u.scale * std::sqrt(variance / u.precision);
     if (unit.inverse.size() == 0) continue;
-    for (std::size_t j = 0; j < of_arm.size(); ++j)
-      report.covariance(static_cast<Index>(i), static_cast<Index>(j)) =
-          variance * unit.inverse(of_arm[i], of_arm[j]) * u.scale *
-          estimated[static_cast<std::size_t>(of_arm[j])].scale;
+    for (std::size_t j = 0; j < of_arm.size(); ++j) {
+      const auto row = static_cast<Index>(i), column = static_cast<Index>(j);
+      const double scale = u.scale * estimated[static_cast<std::size_t>(of_arm[j])].scale;
+      report.covariance(row, column) = covariance(of_arm[i], of_arm[j]) * scale;
+      report.independent_covariance(row, column) = variance * unit.inverse(of_arm[i], of_arm[j]) * scale;
+    }
     p.std = std::sqrt(report.covariance(static_cast<Index>(i), static_cast<Index>(i)));
     if (p.std * p.std > 0.5 * p.prior_std * p.prior_std) p.state = ParameterState::weak;
   }

@@ -12,6 +12,7 @@
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
+#include "vernier/identification/detail/frame_sharing.hpp"
 #include "vernier/identification/detail/identification.hpp"
 #include "vernier/identification/detail/identification_plan.hpp"
 #include "vernier/identification/detail/parameter_selection.hpp"
@@ -35,13 +36,16 @@ class IdentificationRun {
         starts_(starts(nominal, sets, options, own_tools)),
         problem_(ArmParameterisation(starts_, {}), std::move(sets), sensors.loss, sensors.joint_sigma) {
     problem_.joint_columns = false;
-    const int places = problem_.arm.stations();
+    const auto bases = frame_of_sets(problem_.sets(), true, own_tools, problem_.sets().size()),
+               tools = frame_of_sets(problem_.sets(), false, own_tools, problem_.sets().size());
     for (const Index k : plan_.candidates) {
-      const bool own = places > 1 && !plan_.in_chain(k) && (own_tools || k < plan_.chain_begin);
-      for (int place = 0; place < (own ? places : 1); ++place) {
+      const std::vector<GeometricUnknown> shared_by_all(1);
+      for (GeometricUnknown one : plan_.in_chain(k) ? shared_by_all : k < plan_.chain_begin ? bases : tools) {
+        one.parameter = k;
+        one.scale = plan_.scales(k);
         all_.push_back(static_cast<Index>(candidates_.size()));
         if (!plan_.in_chain(k)) frames_.push_back(all_.back());
-        candidates_.push_back({k, own ? place : -1, plan_.scales(k), 0});
+        candidates_.push_back(std::move(one));
       }
     }
   }
@@ -115,16 +119,16 @@ class IdentificationRun {
   static std::size_t at(Index k) { return static_cast<std::size_t>(k); }
   std::size_t num_free() const { return problem_.arm.geometric().size(); }
 
-  /// The nominal arm in frames that roughly fit each set; a shared tool is that of the first.
+  /// The nominal arm in frames that roughly fit each set; a shared base, or tool, is that of the first.
   VERNIER_LOCAL static std::vector<ArmGeometry> starts(const ArmGeometry& nominal, std::vector<MeasuredSet>& sets,
                                                        const IdentifyOptions& options, bool own_tools) {
     std::vector<ArmGeometry> out;
-    for (MeasuredSet& set : sets) {
-      if (out.empty() || own_tools)
-        out.push_back(starting_frames(nominal, set, options.base_free(), options.tool_free()));
-      else
-        out.push_back(
-            starting_frames(nominal.with_frames(nominal.base(), out.front().tool()), set, options.base_free(), false));
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+      const std::size_t base = first_of_place(sets, s), tool = first_of_point(sets, s, own_tools);
+      const ArmGeometry known = nominal.with_frames(base == s ? nominal.base() : out[base].base(),
+                                                    tool == s ? nominal.tool() : out[tool].tool());
+      out.push_back(
+          starting_frames(known, sets[s], options.base_free() && base == s, options.tool_free() && tool == s));
     }
     return out;
   }

@@ -13,7 +13,8 @@
 
 namespace vernier::detail {
 
-/// Residual and derivatives of a sample, divided by the standard deviations.
+/// Residual and derivatives of a sample, divided by the standard deviations, which are those of the row if it has some:
+/// the fit's own multiply them.
 VERNIER_LOCAL void frame_rows(const MeasuredSet& data, const FrameFit& fit, const MatrixX& jacobians, Index i,
                               RowBlock& out) {
   const Isometry3& pose = fit.poses[static_cast<std::size_t>(i)];
@@ -23,10 +24,16 @@ VERNIER_LOCAL void frame_rows(const MeasuredSet& data, const FrameFit& fit, cons
   const double angular = data.oriented() ? 1 / fit.orientation_sigma : 0;
   for (Index c = 0; c < out.dense.cols(); ++c)
     for (Index r = 0; r < 6; ++r) out.dense(r, c) *= r < 3 ? 1 / fit.position_sigma : angular;
-  if (!data.oriented()) return;
-  const Matrix3 seen = rotation(pose) * exp_so3(fit.motion.probe);
-  VERNIER_LATER(out.residual).template tail<3>() =
-      rotation_difference(seen, data.orientations()[static_cast<std::size_t>(i)]) / fit.orientation_sigma;
+  if (data.oriented()) {
+    const Matrix3 seen = rotation(pose) * exp_so3(fit.motion.probe);
+    VERNIER_LATER(out.residual).template tail<3>() =
+        rotation_difference(seen, data.orientations()[static_cast<std::size_t>(i)]) / fit.orientation_sigma;
+  }
+  if (!data.correlated()) return;
+  Matrix6 factor = data.relative_covariance(i);
+  cholesky(factor);
+  solve_lower(factor, out.residual);
+  solve_lower(factor, out.dense);
 }
 
 /// Adds priors so tight that the held directions stay where they are.

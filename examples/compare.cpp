@@ -405,20 +405,26 @@ Request read_command_line(Program& program) {
   std::vector<std::string> methods;
   program.add_option("plan", plan_file, "the whole grid as a JSON file, in place of the options up to --nodes",
                      "PLAN.json");
-  program.add_flag("--list", out.listed, "all methods, and how they are written");
+  program.add_flag("--list", out.listed, "print all methods, and how they are written");
   program.add_option("--methods", methods, "what to compare, see --list", "M,...").delimiter(',');
   program.add_setting("--robot", problem.robot, "an arm of the catalogue, or a JSON file", "R");
-  program.add_setting("--errors", problem.errors, "of a simulated arm; full: joint errors too", "geometric|full");
-  program.add_setting("--region", problem.region, "joints of simulated poses", "operating|full");
-  program.add_setting("--noise-mm", problem.noise_mm, "of simulated positions, per component", "S");
+  program.add_setting("--errors", problem.errors, "errors of a simulated arm; full: joint errors too",
+                      "geometric|full");
+  program.add_setting("--region", problem.region, "joint ranges of simulated poses", "operating|full");
+  program.add_setting("--noise-mm", problem.noise_mm, "standard deviation of simulated positions, per component", "S");
   program.add_option("--data", problem.data, "measured poses instead", "FILE");
   problem.csv.add_to(program, "", "--data");
+  program.group(support::Group::validation);
   program.add_setting("--split", problem.split, "which fifth of the measured poses is held out", "random|region|time");
+  program.group(support::Group::input);
   program.add_setting("--poses", plan.poses, "to learn from; 0: all measured ones", "N,...").delimiter(',');
-  program.add_setting("--seeds", plan.seeds, "of data and fits", "S,...").delimiter(',');
-  program.add_setting("--evaluations", plan.evaluations, "of every search", "E");
-  program.add_setting("--seconds", plan.seconds, "of every search and iterative fit instead; 0: by evaluations", "T");
-  program.add_setting("--nodes", plan.nodes, "of hidden layers", "H");
+  program.add_setting("--seeds", plan.seeds, "seeds of data and fits", "S,...").delimiter(',');
+  program.group(support::Group::model);
+  program.add_setting("--evaluations", plan.evaluations, "evaluations that each search has", "E");
+  program.add_setting("--seconds", plan.seconds,
+                      "seconds that each search and iterative fit has instead; 0: by evaluations", "T");
+  program.add_setting("--nodes", plan.nodes, "nodes of hidden layers", "H");
+  program.group(support::Group::output);
   program
       .add_option("--results", out.results, "file that keeps every cell; a run goes on where another one stopped",
                   "FILE")
@@ -508,9 +514,10 @@ int body(Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("compare",
-                              "Learners and searches on equal terms: the same poses, budget and seeds for all, on\n"
-                              "simulated or measured arms. A run that was stopped goes on where it was; under mpirun\n"
-                              "the ranks share the work.",
-                              argc, argv, body);
+  const support::About about{"compare",
+                             "Compares learners and searches on equal terms: the same poses, budget and seeds for all.",
+                             {"compare --methods identification,geometry+elm,pso:elm --seeds 1,2,3 --out comparison",
+                              "compare --data measured.csv --robot ur10 --methods jointwise,jointwise+pso:elm"},
+                             "done; a run that was stopped goes on where it was"};
+  return support::run_program(about, argc, argv, body);
 }

@@ -350,16 +350,19 @@ int run(support::Program& program) {
   support::ProgramCorrection in_place;
   bool no_approach = false, no_radius = false;
   program.add_option("--model", settings.model, "calibrated model that calibrate saved", "FILE").required();
-  program.add_option(
-      "--targets", settings.targets,
-      "joints q1_rad.. at which the nominal arm stands where the actual one is to go, or poses x_mm, y_mm, "
-      "z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements; a column move says how the arm goes "
-      "there: j (joint move) or l (linear move)",
-      "FILE");
+  program
+      .add_option("--targets", settings.targets,
+                  "joints q1_rad.. at which the nominal arm stands where the actual one is to go, or poses x_mm, y_mm, "
+                  "z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements; a column move says how the arm goes "
+                  "there: j (joint move) or l (linear move)",
+                  "FILE")
+      .required_without("--program");
   settings.csv.add_to(program, "", "--targets");
   support::add_program_options(program, in_place);
+  program.group(support::Group::input);
   program.add_flag("--poses", settings.poses,
                    "of a file with joints and poses, the poses are the targets; the joints choose the branch");
+  program.group(support::Group::model);
   program.add_flag("--linear", settings.linear, "all moves are linear, where the file has no column move");
   program
       .add_setting("--tolerance-mm", settings.tolerance_mm,
@@ -394,7 +397,6 @@ int run(support::Program& program) {
   settings.out = program.common().out;
   settings.approach = !no_approach;
   settings.radius = !no_radius;
-  if (settings.out.empty()) throw support::UsageError("--out is required");
   if (settings.targets.empty() == in_place.program.empty())
     throw support::UsageError("either --targets or --program is required");
   if (!in_place.program.empty())
@@ -424,5 +426,12 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("correct", "Targets in, corrected joint commands out.", argc, argv, run);
+  const support::About about{
+      "correct",
+      "Corrects targets or a robot program with a calibrated model, so that the real tool reaches them.",
+      {"correct --model model.json --targets targets.csv --linear --out commands.csv",
+       "correct --model model.json --program main.mod --out corrected.mod"},
+      "every target is corrected",
+      "not done, or a target is not met; one line on standard error says why"};
+  return support::run_program(about, argc, argv, run);
 }

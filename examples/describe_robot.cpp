@@ -246,9 +246,9 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program(
-      "describe_robot",
-      "Prints an arm as it is understood: rows, joints of the controller, limits, axes, poses, reach; and how the tool "
-      "moves with each joint, to be compared with the pendant.",
-      argc, argv, run);
+  const support::About about{"describe_robot",
+                             "Prints an arm as it is understood, to be compared with the pendant of the controller.",
+                             {"describe_robot --robot abb_irb120 --joints 10,20,30,0,45,0",
+                              "describe_robot --robot my_arm.urdf --base-link base_link --tip-link tool0"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -57,6 +57,9 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("detect_board", "Images of a printed board in; its corners out, for calibrate --corners.",
-                              argc, argv, run);
+  const support::About about{"detect_board",
+                             "Finds the corners of a printed board in images, for calibrate --corners.",
+                             {"detect_board --board board.json --images 'shots/*.png' --out corners.csv",
+                              "detect_board --board board.json --images 'left/*.png' --camera left --out left.csv"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -131,6 +131,7 @@ int run(support::Program& program) {
       "--runs", settings.runs,
       "measured runs along the path: columns cycle, x_mm .., optionally rx_rad .., in the order of measuring", "FILE");
   settings.csv.add_to(program);
+  program.group(support::Group::model);
   program.add_setting("--points", settings.points, "points of the path that are compared", "M").within(1, 100000);
   program.add_flag("--plan", settings.plan, "write the five poses of a test to --out instead");
   program.add_option("--centre-mm", settings.centre, "centre of the cube", "X,Y,Z").delimiter(',');
@@ -199,5 +200,10 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("iso9283", "Accuracy and repeatability after ISO 9283.", argc, argv, run);
+  const support::About about{
+      "iso9283",
+      "Computes accuracy and repeatability after ISO 9283 from repeated visits, or writes the poses of such a test.",
+      {"iso9283 --plan --centre-mm 400,0,500 --edge-mm 300 --out poses.csv",
+       "iso9283 --data visits.csv --commanded poses.csv --out figures/iso"}};
+  return support::run_program(about, argc, argv, run);
 }

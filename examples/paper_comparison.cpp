@@ -478,6 +478,7 @@ int body(support::Program& program) {
   std::optional<double> budget;
   double noise_mm = 0;
   std::string region = "operating", positions = "unbounded";
+  program.group(support::Group::model);
   program.add_flag("--quick", settings.quick,
                    "1000 poses to learn from, 200 test, a quarter of the generations: under a minute");
   program.add_flag("--varpro", settings.var_pro,
@@ -485,14 +486,18 @@ int body(support::Program& program) {
   program
       .add_setting("--runs", settings.runs, "repeat over K error tables and seeds; medians, ranges, paired tests", "K")
       .within(1, 1000);
+  program.group(support::Group::input);
   program.add_setting("--region", region, "joint ranges of all poses", "operating|full").one_of({"operating", "full"});
+  program.group(support::Group::model);
   program
       .add_setting("--positions", positions, "whether PSO's particles may leave [-1, 1]; the paper lets them",
                    "unbounded|clamped")
       .one_of({"unbounded", "clamped"});
+  program.group(support::Group::input);
   program.add_option("--train", train, "poses to learn from; the paper has 5000", "N").within(1, 1000000);
   program.add_option("--test", test, "poses of the test set; the paper has 400", "N").within(1, 1000000);
   program.add_option("--fresh", fresh, "poses of the random set; the paper has 200", "N").within(1, 1000000);
+  program.group(support::Group::model);
   program.add_option("--scale-budget", budget, "factor of the paper's generations and iterations", "F")
       .within(1e-4, 100.0);
   program
@@ -501,6 +506,7 @@ int body(support::Program& program) {
       .within(0, 1000000);
   program.add_setting("--noise-mm", noise_mm, "standard deviation of the measured positions, per component", "S")
       .within(0.0, 100.0);
+  program.group(support::Group::output);
   program.add_output("--write-poses", settings.poses_file, "write simulated measured poses, for `calibrate`");
   program.parse("paper_comparison_out");
   settings.train = train.value_or(settings.quick ? 1000 : 5000);
@@ -563,9 +569,9 @@ int body(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program(
+  const support::About about{
       "paper_comparison",
-      "Learned compensation of an ABB IRB 120 (simulated) as in the paper of Feng, Dong and Jin,\n"
-      "beside the classical identification from the same poses.",
-      argc, argv, body);
+      "Repeats the experiment of Feng, Dong and Jin on a simulated ABB IRB 120, beside the classical identification.",
+      {"paper_comparison --quick", "paper_comparison --runs 20 --seed 1 --out figures --json results.json"}};
+  return support::run_program(about, argc, argv, body);
 }

@@ -179,12 +179,16 @@ int run(support::Program& program) {
   choose.needs(from).excludes(count).excludes(add);
   count.excludes(add);
   from.needs(choose);
+  program.group(support::Group::validation);
   const support::Option every =
       program.add_option("--test-every", o.test_every, "never choose every K-th row of --from", "K")
           .within(2, 1000000)
           .needs(from);
+  program.group(support::Group::output);
   program.add_output("--held-out", o.held_out, "write those rows to this file").needs(every);
+  program.group(support::Group::input);
   o.csv.add_to(program);
+  program.group(support::Group::model);
   program.add_option("--tracker", o.tracker, "position of the tracker in the base frame of the arm [mm]", "X,Y,Z")
       .delimiter(',')
       .expected(3)
@@ -205,22 +209,21 @@ int run(support::Program& program) {
           .add_option("--region", o.region, "joints q1_rad.. of the working region: best there, not all over", "FILE")
           .excludes(choose);
   program
-      .add_option("--region-box", o.region_box, "likewise, as a box of tool positions in the base frame [mm]",
+      .add_option("--region-box", o.region_box, "the working region as a box of tool positions in the base frame [mm]",
                   "X0,X1,Y0,Y1,Z0,Z1")
       .delimiter(',')
       .expected(6)
       .excludes(choose)
       .excludes(region);
-  program.add_flag("--orientations", o.orientations, "orientations are measured, too");
+  program.add_flag("--orientations", o.orientations, "orientations are measured as well");
   program
-      .add_setting("--cover", o.cover, "poses in every 10 deg of every joint that can be reached, before anything else",
+      .add_setting("--cover", o.cover, "minimum number of poses in each 10 degrees of each joint that can be reached",
                    "N")
       .within(0, 1000);
   program.add_setting("--candidates", o.candidates, "number of random poses to choose from", "N").within(3, 1000000);
-  program.add_flag("--bound", o.bound, "compute how much information no choice exceeds");
+  program.add_flag("--bound", o.bound, "print an upper bound of the information that as many poses can have");
   program.parse("", "write the poses to this file", "FILE");
   o.out = program.common().out;
-  if (o.out.empty()) throw support::UsageError("--out is required");
   if (o.count + o.add + o.choose == 0) throw support::UsageError("one of --count, --add and --choose is required");
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   o.csv.controller = robot.controller;
@@ -262,5 +265,10 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("plan_poses", "Which poses to measure for a calibration.", argc, argv, run);
+  const support::About about{
+      "plan_poses",
+      "Plans which poses to measure for a calibration, or chooses the most useful rows of a measured file.",
+      {"plan_poses --robot abb_irb120 --count 100 --orientations --out poses.csv",
+       "plan_poses --robot abb_irb120 --data measured.csv --add 20 --out more.csv"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -71,10 +71,12 @@ int run(support::Program& program) {
                   "fresh measured poses, columns as for calibrate; 10 to 30 of them, joints moved widely", "FILE")
       .required();
   o.csv.add_to(program);
+  program.group(support::Group::model);
   const support::Option registered = program.add_flag(
       "--registered", o.registered, "sensor and arm stand as they did: the base is not registered first");
   program.add_flag("--tool-remounted", o.tool, "the tool, or its probe, was taken off: it is registered, too")
       .excludes(registered);
+  program.group(support::Group::validation);
   program
       .add_option("--accept-mm", o.accept_mm,
                   "the calibration is valid as long as its mean position error does not exceed this [mm]; else as long "
@@ -83,9 +85,11 @@ int run(support::Program& program) {
       .within(1e-6, 1e3);
   program.add_setting("--level", o.level, "probability of a false alarm about an arm that has not changed", "P")
       .within(1e-6, 0.5);
+  program.group(support::Group::input);
   program.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
   program.add_flag("--no-approach", o.no_approach,
                    "rows are not in the order of measuring: no hysteresis by the direction of approach");
+  program.group(support::Group::output);
   program.add_output("--report", o.report, "write the results as one HTML page that needs nothing else");
   program.add_setting("--date", o.date, "date written into the report", "DATE");
   program.parse("", nullptr);
@@ -96,10 +100,12 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program(
+  const support::About about{
       "verify_calibration",
-      "Is a calibration still valid? A saved model and a few fresh poses in; base frame, errors, which joint has "
-      "changed, a verdict and what to do out. Exit code 0: valid. 1: not valid, or no answer, which a line on standard "
-      "error explains. 2: wrong usage.",
-      argc, argv, run);
+      "Tests with a few fresh poses whether a calibration is still valid, and says which joint has changed.",
+      {"verify_calibration --model model.json --data fresh.csv",
+       "verify_calibration --model model.json --data fresh.csv --accept-mm 0.2 --report verification.html"},
+      "the calibration is valid",
+      "not valid, or no answer, which a line on standard error explains"};
+  return support::run_program(about, argc, argv, run);
 }

@@ -209,12 +209,12 @@ void print_table(const Grid& grid, const Plan& plan, std::size_t problem, vn::In
   fmt::print("{}, {} to learn from, {} seed{}; without learning {:.4g} mm\n", plan.problems[problem].name,
              poses_words(poses), plan.seeds.size(), plan.seeds.size() == 1 ? "" : "s",
              vn::quantile(values(before, [](const Outcome& o) { return o.before; }), 0.5));
-  fmt::print("  {:<34}{:>10}  {:<20}{:>9}{:>9}{:>9}{:>9}\n", "mean error [mm]", "median", "quartiles", "p95", "max",
+  fmt::print("  {:<33} {:>9}  {:<21} {:>9} {:>9} {:>8} {:>8}\n", "mean error [mm]", "median", "quartiles", "p95", "max",
              "seconds", "p");
   bool first = true;
   for (const Row& row : ranked(grid, plan, problem, poses)) {
-    fmt::print("  {:<34}{:>10.4g}  {:<20}{:>9.4g}{:>9.4g}{:>9.3g}{:>9}{}\n", plan.methods[row.method].text, row.median,
-               fmt::format("[{:.4g}, {:.4g}]", row.lower, row.upper), row.p95, row.max, row.seconds,
+    fmt::print("  {:<33} {:>9.4g}  {:<21} {:>9.4g} {:>9.4g} {:>8.3g} {:>8}{}\n", plan.methods[row.method].text,
+               row.median, fmt::format("[{:.4g}, {:.4g}]", row.lower, row.upper), row.p95, row.max, row.seconds,
                first || plan.seeds.size() < 2 ? "" : fmt::format("{:.2g}", row.p_value),
                row.failures > 0 ? fmt::format("  ({} failed: {})", row.failures,
                                               [&] {
@@ -341,10 +341,8 @@ std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::Matr
       ranks.push_back({plan.methods[static_cast<std::size_t>(m)].text, average(m),
                        vn::critical_difference(cases.cols(), cases.rows()) / 2});
     const auto path = folder / "ranks.svg";
-    keep(intervals_svg(
-             path,
-             fmt::format("Average ranks over {} cases: where two bars do not overlap, methods differ", cases.rows()),
-             "average rank, 1 is best", ranks),
+    keep(intervals_svg(path, fmt::format("Average ranks over {} cases: bars that do not overlap differ", cases.rows()),
+                       "average rank, 1 is best", ranks),
          path);
   }
   return files;
@@ -410,7 +408,10 @@ Request read_command_line(Program& program) {
   program.add_setting("--robot", problem.robot, "an arm of the catalogue, or a JSON file", "R");
   program.add_setting("--errors", problem.errors, "errors of a simulated arm; full: joint errors too",
                       "geometric|full");
-  program.add_setting("--region", problem.region, "joint ranges of simulated poses", "operating|full");
+  program.add_option(
+      "--region", problem.region,
+      "joint ranges of simulated poses: operating (of the abb_irb120, and its default) or full, the joint limits",
+      "operating|full");
   program.add_setting("--noise-mm", problem.noise_mm, "standard deviation of simulated positions, per component", "S");
   program.add_option("--data", problem.data, "measured poses instead", "FILE");
   problem.csv.add_to(program, "", "--data");

@@ -20,6 +20,7 @@
 #include "json_file.hpp"
 #include "payload_option.hpp"
 #include "program_correction.hpp"
+#include "progress.hpp"
 #include "vernier/compensation/correct_path.hpp"
 #include "vernier/core/same_value.hpp"
 #include "vernier/data/csv.hpp"
@@ -313,12 +314,14 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
     }
     if (!path.points.empty()) options.start = path.points.back().command;
   };
+  support::Working working("correcting");
   for (const Run<N>& run : runs_of(targets, robot, options.limits)) {
     options.limits = run.limits;
     const auto begin = targets.begin() + static_cast<std::ptrdiff_t>(run.first);
     const std::vector<vn::PathTarget<N>> part(begin, begin + static_cast<std::ptrdiff_t>(run.count));
     with_branches(robot, run.limits, [&](const auto& roots) { correct_run(run, part, roots); });
   }
+  working.finish();
   if (!settings.branches)
     for (const auto& target : targets) report.linear = report.linear || target.motion == vn::Motion::linear;
   report.before = path.before;
@@ -337,10 +340,17 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
                            p.gate,
                            p.singularities,
                            {}});
+    if (p.command.allFinite()) report.rows.back().point = arm.position(p.command);
   }
   if (settings.radius && !settings.branches && saved.estimate() != nullptr) {
-    const std::vector<double> radii = robot.radii_95(commands);
-    for (std::size_t i = 0; i < radii.size(); ++i) report.rows[i].radius = radii[i];
+    constexpr vn::Index block = 64;  // at a time, each command for itself
+    support::ProgressBar bar("radii of 95 %", commands.rows());
+    for (vn::Index first = 0; first < commands.rows(); first += block) {
+      const vn::Index count = std::min(block, commands.rows() - first);
+      const std::vector<double> radii = robot.radii_95(vn::JointRows<N>(commands.middleRows(first, count)));
+      for (std::size_t i = 0; i < radii.size(); ++i) report.rows[static_cast<std::size_t>(first) + i].radius = radii[i];
+      bar.update(first + count);
+    }
   }
   return report;
 }

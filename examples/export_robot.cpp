@@ -12,6 +12,7 @@
 #include "file_name.hpp"
 #include "json_file.hpp"
 #include "pose_calibration.hpp"
+#include "progress.hpp"
 #include "robot_choice.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/urdf.hpp"
@@ -160,7 +161,9 @@ int run(support::Program& program) {
                               "' is behind no fixed joint, which could hold the tool");
   const vn::ThreadExecutor executor(program.common().threads);
   const vn::FitOptions fit{.seed = program.common().seed, .executor = executor};
+  support::Working working("calibrating");
   const Outcome out = export_arm(o, robot, chain, fit);
+  working.finish();
   for (const ExportedFile& file : out.files) vn::write_file(file.path, file.text);
   print(o, robot, out);
   if (!program.common().json.empty()) {

@@ -56,8 +56,8 @@ std::string milli(const vn::Vector3& v) {
 
 /// Deviations of the visits of a pose from their barycentre, with the circle of RP.
 void plot_visits(const std::string& prefix, const vn::Iso9283Pose& pose, const std::vector<vn::Iso9283Visit>& visits) {
-  support::Series xy{"y over x", {}, {}, support::Style::points, 5}, xz{"z over x", {}, {}, support::Style::points, 4},
-      circle{"RP", {}, {}, support::Style::dashed, 0};
+  support::Series xy{"visits", {}, {}, support::Style::points, 5}, xz = xy,
+                                                                   circle{"RP", {}, {}, support::Style::dashed, 0};
   for (const auto& visit : visits) {
     if (visit.pose != pose.pose || visit.direction != pose.direction) continue;
     const vn::Vector3 d = 1e6 * (visit.measured.translation() - pose.mean.translation());
@@ -70,8 +70,8 @@ void plot_visits(const std::string& prefix, const vn::Iso9283Pose& pose, const s
     circle.y.push_back(1e6 * pose.rp * std::sin(k * std::numbers::pi / 36));
   }
   const std::string file = fmt::format("{}_p{}.svg", prefix, pose.pose);
-  if (support::plot_svg(file, fmt::format("Visits of P{} about their barycentre", pose.pose), "x [um]", "y, z [um]",
-                        {xy, xz, circle}, {.width = 640, .height = 660, .equal_axes = true}))
+  if (support::panels_svg(file, fmt::format("Visits of P{} about their barycentre", pose.pose), "x [um]", "y, z [um]",
+                          {{"y over x", {xy, circle}}, {"z over x", {xz, circle}}}, {.equal_axes = true}))
     fmt::print("Visits of P{}: {}\n", pose.pose, file);
 }
 

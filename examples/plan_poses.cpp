@@ -14,6 +14,7 @@
 #include "dispatch.hpp"
 #include "json_file.hpp"
 #include "plan_figures.hpp"
+#include "progress.hpp"
 #include "robot_choice.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
@@ -132,6 +133,7 @@ support::PlanOutcome plan_arm(const Settings& o, const vn::RobotDescription& des
   options.bin_count = o.cover;
   options.bound_iterations = o.bound ? 10 : 0;
   support::PlanOutcome out = o.choose > 0 ? choose_rows(o, robot, options) : plan_new(o, robot, options, seed);
+  out.oriented = options.oriented;
   const auto types = robot.arm.model().joint_types();
   out.types.assign(types.begin(), types.end());
   return out;
@@ -227,8 +229,10 @@ int run(support::Program& program) {
   if (o.count + o.add + o.choose == 0) throw support::UsageError("one of --count, --add and --choose is required");
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   o.csv.controller = robot.controller;
+  support::Working working("planning");
   const support::PlanOutcome found =
       support::dispatch_dof(robot.dof(), [&](auto n) { return plan_arm<n()>(o, robot, program.common().seed); });
+  working.finish();
 
   const vn::PlannedMeasurements& plan = found.plan;
   fmt::print("{}: {} poses of {} candidates, to determine {} unknowns\n", robot.name, plan.chosen.size(),
@@ -248,9 +252,20 @@ int run(support::Program& program) {
         found.measured, errors(0) * 1e3, errors(half) * 1e3, errors(all) * 1e3);
   if (plan.enough() < all)
     fmt::print("From {} poses on, ten more reduce the predicted error by less than 2 %\n", plan.enough());
+  const vn::Index values = all * (found.oriented ? 6 : 3);
+  if (values < plan.unknowns)
+    fmt::print(
+        "They measure {} values, fewer than the unknowns: expected sizes decide what they do not tell. {} poses "
+        "measure "
+        "as many\n",
+        values, (plan.unknowns + values / all - 1) / (values / all));
+  bool gap = false;
   for (int j = 0; j < robot.dof(); ++j)
-    if (const std::string gaps = support::gaps_of(found, j); !gaps.empty())
-      fmt::print("Joint {} could be measured, but is not, in {}\n", j + 1, gaps);
+    if (const std::string gaps = support::gaps_of(found, j); !gaps.empty()) {
+      fmt::print("Not covered by these poses: q{} in {}\n", j + 1, gaps);
+      gap = true;
+    }
+  if (gap && o.choose == 0 && o.cover == 0) fmt::print("--cover 1 plans a pose in each of these ranges\n");
   if (o.choose == 0)
     fmt::print("{} visits: the first three register the tracker, the first pose is visited {} times to see drift\n",
                plan.visits.size(), std::count(plan.visits.begin(), plan.visits.end(), plan.visits.front()));

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string>
 
 #include "cli.hpp"
+#include "console.hpp"
 #include "csv_options.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
+#include "progress.hpp"
 #include "report_page.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
 #include "vernier/data/csv.hpp"
@@ -24,6 +27,15 @@ struct Options {
   bool registered = false, tool = false, positions_only = false, no_approach = false;
   double accept_mm = 0, level = 0.05;
 };
+
+/// The arm and where its calibration comes from, as far as the model says so.
+std::string calibrated(const std::string& name, const vn::Provenance& from) {
+  std::string out = name;
+  if (!from.date.empty()) out += fmt::format(", calibrated {}", from.date);
+  if (from.rows > 0) out += fmt::format("{} from {} rows", from.date.empty() ? ", calibrated" : "", from.rows);
+  if (from.rows > 0 && !from.data_file.empty()) out += fmt::format(" of {}", from.data_file);
+  return out;
+}
 
 template <int N>
 int verify_arm(const support::Program& program, Options& o, const vn::SavedModel& model) {
@@ -43,13 +55,17 @@ int verify_arm(const support::Program& program, Options& o, const vn::SavedModel
   options.sensors.use_orientations = !o.positions_only;
   options.expected_error = robot.provenance().expected_error();
   options.fitted_poses = robot.provenance().fitted_to(data.origin().hashes.front());
+  support::Working working("verifying");
   const vn::VerificationReport report =
       vn::verify_calibration(robot.model(), *robot.estimate(), data, options, learned);
+  working.finish();
 
-  fmt::print("{}, calibrated {} from {} rows of {}; {} poses of {}\n\n", robot.name(), robot.provenance().date,
-             robot.provenance().rows, robot.provenance().data_file, data.size(), o.data);
+  const std::string summary = report.summary(), verdict = summary.substr(0, summary.find('\n'));
+  fmt::print("{}{}\n", support::styled(verdict, report.valid ? support::Look::good : support::Look::bad),
+             summary.substr(verdict.size()));
+  fmt::print("Errors [mm]\n\n{}\n", vn::stage_table(vn::stages_of(report)));
   if (report.registration) fmt::print("{}\n", report.registration->summary());
-  fmt::print("Errors [mm]\n\n{}\n{}", vn::stage_table(vn::stages_of(report)), report.summary());
+  fmt::print("{}; {} poses of {}\n", calibrated(robot.name(), robot.provenance()), data.size(), o.data);
   const support::Json json = vn::to_json(report, robot.name());
   if (!program.common().json.empty()) support::write_json(program.common().json, json);
   if (!o.report.empty()) {

@@ -15,7 +15,7 @@ namespace vn = vernier;
 /// Values whose units or words differ from those of the options that they are turned into.
 struct TypedValues {
   std::string loss = "huber";
-  double distance_sigma_mm = 0.03, contact_sigma_mm = 0.03;
+  double position_sigma_mm = 0.03, orientation_sigma_mrad = 0.1, distance_sigma_mm = 0.03, contact_sigma_mm = 0.03;
   double relevant_mm = 0;
   bool positions_only = false, no_tilt = false, no_temperature = false, no_drift = false;
 };
@@ -44,9 +44,15 @@ void add_measurements(Program& program, CalibrationOptions& o, TypedValues& type
                      "q1_rad.., distance_mm; one file a fixed point",
                      "FILE");
   o.csv.add_to(program);
+  program.add_setting("--distance-sigma", typed.distance_sigma_mm, "standard deviation of a distance [mm]", "MM")
+      .within(1e-6, 1e3);
   program
-      .add_setting("--distance-sigma", typed.distance_sigma_mm,
-                   "standard deviation of a distance [mm]; of positions it is 0.03 mm", "MM")
+      .add_setting("--position-sigma", typed.position_sigma_mm,
+                   "standard deviation of a measured position, per component [mm]", "MM")
+      .within(1e-6, 1e3);
+  program
+      .add_setting("--orientation-sigma", typed.orientation_sigma_mrad,
+                   "standard deviation of a measured orientation, per component [mrad]", "MRAD")
       .within(1e-6, 1e3);
 }
 
@@ -127,6 +133,7 @@ void add_results(Program& program, CalibrationOptions& o) {
   program.add_output("--save", o.save, "write the calibrated model to this file, for correct");
   program.add_flag("--verbose", o.verbose,
                    "print the details behind the verdict: identification, decisions, ranges, drift, lines, advice");
+  program.add_flag("--parameters", o.parameters, "print the identified frames and links, with standard deviations");
   program.add_setting("--date", o.date, "date written into the model", "DATE");
   const Option report =
       program.add_output("--report", o.report, "write the results as one HTML page that needs nothing else");
@@ -240,6 +247,8 @@ CalibrationOptions read_calibration_options(Program& program) {
       {"squared", vn::Loss::squared}, {"huber", vn::Loss::huber}, {"cauchy", vn::Loss::cauchy}};
   vn::SensorModel& sensors = o.calibrate.sensors;
   sensors.loss = losses.at(typed.loss);
+  sensors.position_sigma = typed.position_sigma_mm * 1e-3;
+  sensors.orientation_sigma = typed.orientation_sigma_mrad * 1e-3;
   sensors.distance_sigma = typed.distance_sigma_mm * 1e-3;
   sensors.contact_sigma = typed.contact_sigma_mm * 1e-3;
   sensors.use_orientations = !typed.positions_only;

@@ -20,6 +20,7 @@
 #include <system_error>
 #include <thread>
 
+#include "console.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/detail/destination.hpp"
 
@@ -35,7 +36,7 @@ std::string one_line(std::string text) {
 
 int fail(const char* name, const std::string& what, int code) {
   std::fflush(stdout);
-  fmt::print(stderr, "{}: {}\n", name, one_line(what));
+  fmt::print(stderr, "{}: {}\n", styled(name, Look::bad, STDERR_FILENO), one_line(what));
   return code;
 }
 
@@ -316,6 +317,8 @@ void Program::parse(const std::string& default_out, const char* out_description,
     if (file && default_out.empty()) Option(out).required();
     if (file) outputs_.emplace_back("--out", &common_.out);
   }
+  bool quiet = false;
+  add_flag("--quiet", quiet, "print nothing but errors; files and exit codes are as without");
   group(Group::general);
   add_setting("--seed", common_.seed, "seed of all random numbers", "S").not_negative();  // else -1 would wrap around
   add_setting("--threads", common_.threads, "threads that compute; the results do not depend on it", "T")
@@ -327,6 +330,7 @@ void Program::parse(const std::string& default_out, const char* out_description,
   app_->parse(argc_, argv_);
   if (completion_asked) throw UsageError("--completion stands alone");
   for (const auto& [name, file] : outputs_) open_output(name, *file);
+  if (quiet) be_quiet();
 }
 
 void Program::open_output(const std::string& name, std::string& file) {

@@ -22,12 +22,12 @@ const char* words(vernier::ParameterState state) {
 
 std::string parameter_table(const vernier::IdentificationReport& report) {
   std::string out =
-      fmt::format("{:<12}{:>14}{:>14}{:>12}{:>12}\n", "parameter", "as designed", "identified", "change", "std. dev.");
+      fmt::format("{:<12}{:>14}{:>14}{:>14}{:>12}\n", "parameter", "as designed", "identified", "change", "std. dev.");
   for (const vernier::ParameterEstimate& one : report.parameters) {
     const bool length = one.kind == vernier::ParameterKind::length;
     const double unit = length ? 1e3 : 180 / std::numbers::pi;
     const double nominal = one.nominal * unit, identified = one.identified * unit;
-    out += fmt::format("{:<12}{:>10.3f} {:<3}{:>10.3f} {:<3}{:>7.3f} {:<4}", one.name, nominal, length ? "mm" : "deg",
+    out += fmt::format("{:<12}{:>10.3f} {:<3}{:>10.3f} {:<3}{:>9.4f} {:<4}", one.name, nominal, length ? "mm" : "deg",
                        identified, length ? "mm" : "deg", (one.identified - one.nominal) * 1e3, length ? "mm" : "mrad");
     out += one.std > 0 ? fmt::format("{:>12.4f}  {}\n", one.std * 1e3, words(one.state))
                        : fmt::format("{:>12}  {}\n", "", words(one.state));

@@ -255,9 +255,8 @@ int run(support::Program& program) {
   const vn::Index values = all * (found.oriented ? 6 : 3);
   if (values < plan.unknowns)
     fmt::print(
-        "They measure {} values, fewer than the unknowns: expected sizes decide what they do not tell. {} poses "
-        "measure "
-        "as many\n",
+        "These poses measure {} values, fewer than the unknowns; expected sizes supply the rest. {} poses would "
+        "measure as many\n",
         values, (plan.unknowns + values / all - 1) / (values / all));
   bool gap = false;
   for (int j = 0; j < robot.dof(); ++j)

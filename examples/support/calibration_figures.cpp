@@ -33,7 +33,7 @@ std::vector<std::pair<const StageErrors*, int>> shown_stages(const vernier::Cali
     const int colour = stage.name == vernier::Stage::frames      ? 0
                        : stage.name == vernier::Stage::geometry  ? 1
                        : stage.name == vernier::Stage::jointwise ? 2
-                       : stage.name == report.chosen             ? 3
+                       : stage.name == report.chosen             ? 5
                                                                  : -1;
     if (colour >= 0) out.emplace_back(&stage, colour);
   }
@@ -130,11 +130,11 @@ void draw_calibration(const std::filesystem::path& folder, const std::string& ro
     if ((margin.array() > 0).any())
       plot_svg(folder / fmt::format("transmission_{}.svg", j + 1),
                fmt::format("{}: error function of {}, mean subtracted", robot, name), x_label, "joint error [mrad]",
-               {{"joint error", angle, scaled(joint.transmission, 1e3), Style::lines, 2},
+               {{"joint error", angle, scaled(joint.transmission, 1e3), Style::lines, 5},
                 {"95 % band", angle, scaled(vernier::VectorX(joint.transmission + margin), 1e3), Style::dashed, 2},
                 {"", angle, scaled(vernier::VectorX(joint.transmission - margin), 1e3), Style::dashed, 2}});
     if (!joint.spectrum.empty()) {
-      Series amplitude{"amplitude", {}, {}, Style::points, 2}, limit{"above noise", {}, {}, Style::dashed, 0};
+      Series amplitude{"amplitude", {}, {}, Style::points, 5}, limit{"above noise", {}, {}, Style::dashed, 0};
       for (const vernier::HarmonicEstimate& one : joint.spectrum) {
         amplitude.x.push_back(one.order);
         amplitude.y.push_back(one.amplitude * 1e6);
@@ -150,7 +150,7 @@ void draw_calibration(const std::filesystem::path& folder, const std::string& ro
                         {joint.measured_ranges[k].first * unit, joint.measured_ranges[k].second * unit},
                         {row, row},
                         Style::lines,
-                        2});
+                        5});
   }
   plot_svg(folder / "joint_ranges.svg", robot + ": measured joint ranges", "joint value [deg, mm]", "joint", ranges,
            {.y_range = std::pair{0.0, static_cast<double>(report.joints.size() + 1)}});

@@ -65,7 +65,7 @@ bool draw_branches(const std::filesystem::path& path, const CorrectionReport& re
     tool.y.push_back(arm.y.back());
     const bool within = row.status == "converged";
     if (!within) arm.style = Style::dashed;
-    arm.name = within ? "links" : "links, beyond the limits of the joints";
+    arm.name = within ? "links" : "links, beyond the limits";
     arms.push_back({row.kind, {arm, tool}});
   }
   if (arms.empty()) return false;

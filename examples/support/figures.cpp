@@ -28,7 +28,7 @@ constexpr std::array<const char*, palette_size> palette{"#000000", "#E69F00", "#
                                                         "#D55E00", "#0072B2", "#CC79A7"};
 
 /// Dashes and shapes of points by colour, so that neighbours in grey differ: dark solid lines beside light dashed ones.
-constexpr std::array<int, palette_size> dashes{1, 1, 2, 1, 4, 2, 3};
+constexpr std::array<int, palette_size> dashes{1, 1, 2, 5, 4, 1, 3};
 constexpr std::array<int, palette_size> shapes{7, 5, 6, 9, 8, 7, 4};
 
 std::size_t index_of(const Series& series, std::size_t position) {
@@ -161,7 +161,7 @@ std::string look_of(const Series& s, std::size_t position) {
   switch (s.style) {
     case Style::lines: return fmt::format("with lines linewidth 2 dashtype {} linecolor rgb '{}'", dash, c);
     case Style::dashed: return fmt::format("with lines dashtype 2 linewidth 1.6 linecolor rgb '{}'", c);
-    case Style::points: return fmt::format("with points pointtype {} pointsize 0.32 linecolor rgb '{}'", shapes[k], c);
+    case Style::points: return fmt::format("with points pointtype {} pointsize 0.42 linecolor rgb '{}'", shapes[k], c);
     case Style::steps: return fmt::format("with steps linewidth 2 dashtype {} linecolor rgb '{}'", dash, c);
     case Style::filled_steps:
       return fmt::format("with fillsteps fillstyle transparent solid 0.25 noborder linecolor rgb '{}'", c);
@@ -206,6 +206,15 @@ std::string plots_of(const std::vector<Series>& series, const FigureOptions& opt
                      look_of(s, k));
   }
   return plots;
+}
+
+/// The distance of ticks: a round number that leaves 90 pixels between them.
+double step_of(double range, double pixels) {
+  const double least = range / std::max(2.0, pixels / 90);
+  const double decade = std::pow(10, std::floor(std::log10(least)));
+  for (const double mark : {1.0, 2.0, 5.0})
+    if (mark * decade >= least) return mark * decade;
+  return 10 * decade;
 }
 
 /// The axes of a plot.
@@ -260,7 +269,12 @@ bool panels_svg(const std::filesystem::path& path, const std::string& title, con
       if (!s.name.empty() && !known) named.push_back(s);
     }
   FigureOptions page = options;
-  const int legend = named.empty() ? 0 : 26 * (1 + (static_cast<int>(named.size()) - 1) / 3), head = 64, foot = 64;
+  std::size_t longest = 0;
+  for (const Series& s : named) longest = std::max(longest, s.name.size());
+  const int entries = static_cast<int>(named.size()),
+            across = std::clamp(page.width / (80 + 10 * static_cast<int>(longest)), 1, std::max(entries, 1)),
+            legend_rows = (entries + across - 1) / across;
+  const int legend = 28 * legend_rows, head = 64, foot = 84;
   const int left = 92, inside = own ? 210 : columns == 1 ? 360 : 250;
   page.height = head + foot + legend + rows * inside;
   // one place for the axes of each plot, in shares of the page
@@ -277,7 +291,7 @@ bool panels_svg(const std::filesystem::path& path, const std::string& title, con
     script += fmt::format("set label 2 {} at screen {:.4f},{:.4f} center rotate by 90\n", quoted(y_label),
                           16.0 / page.width, 0.5 * (top_share + bottom_share));
   script += fmt::format("set label 3 {} at screen {:.4f},{:.4f} center\n", quoted(x_label),
-                        0.5 * (left_share + right_share), static_cast<double>(legend + 14) / page.height);
+                        0.5 * (left_share + right_share), static_cast<double>(legend + 20) / page.height);
   const auto extent = [&](const auto& values_of) -> std::optional<std::pair<double, double>> {
     double low = std::numeric_limits<double>::infinity(), high_end = -low;
     for (const Series& s : all)
@@ -290,9 +304,19 @@ bool panels_svg(const std::filesystem::path& path, const std::string& title, con
     const double margin = 0.03 * (high_end - low);
     return std::pair{low - margin, high_end + margin};
   };
-  if (options.equal_axes) script += "set size ratio -1\n";
   if (!page.x_range && !page.log_x) page.x_range = extent([](const Series& s) { return s.x; });
   if (!own && !page.y_range && !page.log_y) page.y_range = extent([](const Series& s) { return s.y; });
+  if (options.equal_axes && page.x_range && page.y_range) {  // the ranges fill the panels at one scale
+    auto& [x0, x1] = *page.x_range;
+    auto& [y0, y1] = *page.y_range;
+    const double across_px = wide * page.width, up_px = high * page.height;
+    const double scale = std::max((x1 - x0) / across_px, (y1 - y0) / up_px);
+    const double mid_x = 0.5 * (x0 + x1), mid_y = 0.5 * (y0 + y1);
+    page.x_range = {mid_x - 0.5 * scale * across_px, mid_x + 0.5 * scale * across_px};
+    page.y_range = {mid_y - 0.5 * scale * up_px, mid_y + 0.5 * scale * up_px};
+  }
+  if (page.x_range)  // few enough ticks for numbers that do not touch
+    script += fmt::format("set xtics {:g}\n", step_of(page.x_range->second - page.x_range->first, wide * page.width));
   std::size_t first = 0;
   for (int k = 0; k < count; ++k) {
     const Panel& panel = panels[static_cast<std::size_t>(k)];
@@ -313,8 +337,12 @@ bool panels_svg(const std::filesystem::path& path, const std::string& title, con
   if (!named.empty()) {  // a plot without anything but its legend
     script +=
         "set lmargin at screen 0\nset rmargin at screen 1\nset tmargin at screen 1\nset bmargin at screen 0\n"
-        "unset logscale\nunset border\nunset tics\nunset xlabel\nunset ylabel\nset title ''\nset size noratio\n"
-        "set key at screen 0.5,0.01 bottom center horizontal Left reverse samplen 2.2 spacing 1.2\nplot [0:1] [0:1] ";
+        "unset logscale\nunset border\nunset tics\nunset xlabel\nunset ylabel\nset title ''\n"
+        "unset grid\n";
+    script += fmt::format(
+        "set key at screen 0.5,0.01 bottom center vertical maxrows {} Left reverse samplen 2.2 spacing 1.2\n"
+        "plot [0:1] [0:1] ",
+        legend_rows);
     for (std::size_t k = 0; k < named.size(); ++k) script += (k > 0 ? ", " : "") + legend_of(named[k], k);
     script += "\n";
   }
@@ -358,7 +386,7 @@ bool dots_svg(const std::filesystem::path& path, const std::string& title, const
         upper = std::max(upper, value);
       }
   // room for the values on the left
-  script += log_axis("x", series, std::pair{lower * std::pow(lower / upper, 0.15), upper * 1.15},
+  script += log_axis("x", series, std::pair{lower * std::pow(lower / upper, 0.3), upper * 1.15},
                      [](const Series& s) { return s.y; });
   for (std::size_t k = 0; k < series.size(); ++k) {
     vernier::demand(series[k].y.size() == labels.size(), "dots_svg: series '", series[k].name, "' has ",

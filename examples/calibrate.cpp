@@ -3,12 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+
 #include "calibration_figures.hpp"
 #include "calibration_options.hpp"
 #include "camera_calibration.hpp"
 #include "cli.hpp"
+#include "console.hpp"
 #include "contact_calibration.hpp"
 #include "json_file.hpp"
+#include "parameter_table.hpp"
 #include "pose_calibration.hpp"
 #include "progress.hpp"
 #include "report_page.hpp"
@@ -26,13 +33,28 @@ support::PoseCalibration calibrate_with_progress(const support::Program& program
   o.calibrate.arm_name = robot.name;
   o.calibrate.remainder.on_geometry = true;
   const int swarms = 2 * (o.calibrate.remainder.iterations + 1);
-  support::ProgressBar progress("searching", swarms + (o.priors == "default" ? 0 : support::prior_generations + 1));
+  const vn::Index total = swarms + (o.priors == "default" ? 0 : support::prior_generations + 1);
+  std::optional<support::Working> fitting(std::in_place, "fitting the error model");  // until something is searched
+  std::optional<support::ProgressBar> searching;
   vn::Index generations = 0;
-  const auto count = [&](const vn::Progress&) { progress.update(++generations); };
+  const auto count = [&](const vn::Progress&) {
+    fitting.reset();
+    if (!searching) searching.emplace("searching", total);
+    searching->update(++generations);
+  };
   const vn::ThreadExecutor executor(program.common().threads);
-  support::PoseCalibration out =
-      support::calibrate_from_poses(robot, o, {.seed = program.common().seed, .executor = executor, .observer = count});
-  progress.finish();
+  return support::calibrate_from_poses(robot, o,
+                                       {.seed = program.common().seed, .executor = executor, .observer = count});
+}
+
+/// The verdict and the table of stages. On a terminal their title and the row of the deployed stage stand out.
+std::string verdict_of(const vn::CalibrationReport& report) {
+  std::istringstream lines(report.summary());
+  std::string out;
+  for (std::string line; std::getline(lines, line);) {
+    const bool strong = line == "Verdict" || line.starts_with(report.stage(report.chosen).title + "  ");
+    out += (strong ? support::styled(line, support::Look::strong) : line) + "\n";
+  }
   return out;
 }
 
@@ -65,9 +87,21 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
   o.csv.controller = robot.controller;
   support::PoseCalibration found = calibrate_with_progress(program, robot, o);
   const vn::CalibrationReport& report = found.report;
+  fmt::print("{}\n", verdict_of(report));
   print_measurements(robot, o, found);
-  fmt::print("\n{}", o.verbose ? report.full_summary() : report.summary());
   print_reflectors(found.reflectors);
+  if (o.parameters)
+    fmt::print("\nFrames and links, as the stage geometry has them\n\n{}",
+               support::parameter_table(report.identification));
+  if (o.verbose) {
+    fmt::print("\n{}\nDetails\n", report.identification.summary());
+    for (const std::string& line : report.details()) fmt::print("- {}\n", line);
+    fmt::print(
+        "\nFrom poses to error model in {:.1f} s, and {:.1f} s more of leave-one-pose-out errors; a pose of the chosen "
+        "stage with its Jacobian takes {:.2g} us\n",
+        report.fit_seconds - report.leave_one_out_seconds, report.leave_one_out_seconds,
+        report.evaluation_seconds * 1e6);
+  }
   support::Json json = vn::to_json(report, robot.name);
   for (const support::FoundReflector& one : found.reflectors)
     json["reflectors"].push_back({{"measured", one.name},
@@ -83,12 +117,10 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
   }
   const std::filesystem::path folder = program.output_folder();
   support::draw_calibration(folder, robot.name, report);
-  fmt::print(
-      "\nFrom poses to error model in {:.1f} s, and {:.1f} s more of leave-one-pose-out errors; a pose of the chosen "
-      "stage with its Jacobian takes {:.2g} us. Figures: {}\n",
-      report.fit_seconds - report.leave_one_out_seconds, report.leave_one_out_seconds, report.evaluation_seconds * 1e6,
-      folder.string());
-  if (!o.verbose) fmt::print("Details behind the verdict: --verbose, or --report FILE\n");
+  fmt::print("\n");
+  if (!o.verbose)
+    fmt::print("Details behind the verdict: --verbose; frames and links: --parameters; all of it: --report FILE\n");
+  fmt::print("Figures: {}\n", folder.string());
   if (!o.save.empty()) fmt::print("Calibrated model: {}\n", support::shown(o.save));
   for (std::size_t k = 0; k < found.further_models.size(); ++k)
     fmt::print("With the tool of {}: {}\n", support::shown(found.sets[k + 1]), support::shown(found.further_models[k]));
@@ -112,12 +144,10 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program(
+  const support::About about{
       "calibrate",
-      "Measured poses, contacts or images of a printed board in; base and tool frames, the arm's geometry, gravity "
-      "compliance, "
-      "functions of single joints, hysteresis by the direction of approach, drift of the "
-      "session and what learners find in the remainder; errors at held-out poses after each, and a "
-      "verdict.",
-      argc, argv, run);
+      "Calibrates an arm from measured poses, contacts or images, and reports its accuracy at held-out poses.",
+      {"calibrate --robot abb_irb120 --data measured.csv --test-every 5 --save model.json --report report.html",
+       "calibrate --model model.json --free base --data fresh.csv --save moved.json"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -209,12 +209,12 @@ void print_table(const Grid& grid, const Plan& plan, std::size_t problem, vn::In
   fmt::print("{}, {} to learn from, {} seed{}; without learning {:.4g} mm\n", plan.problems[problem].name,
              poses_words(poses), plan.seeds.size(), plan.seeds.size() == 1 ? "" : "s",
              vn::quantile(values(before, [](const Outcome& o) { return o.before; }), 0.5));
-  fmt::print("  {:<34}{:>10}  {:<20}{:>9}{:>9}{:>9}{:>9}\n", "mean error [mm]", "median", "quartiles", "p95", "max",
+  fmt::print("  {:<33} {:>9}  {:<21} {:>9} {:>9} {:>8} {:>8}\n", "mean error [mm]", "median", "quartiles", "p95", "max",
              "seconds", "p");
   bool first = true;
   for (const Row& row : ranked(grid, plan, problem, poses)) {
-    fmt::print("  {:<34}{:>10.4g}  {:<20}{:>9.4g}{:>9.4g}{:>9.3g}{:>9}{}\n", plan.methods[row.method].text, row.median,
-               fmt::format("[{:.4g}, {:.4g}]", row.lower, row.upper), row.p95, row.max, row.seconds,
+    fmt::print("  {:<33} {:>9.4g}  {:<21} {:>9.4g} {:>9.4g} {:>8.3g} {:>8}{}\n", plan.methods[row.method].text,
+               row.median, fmt::format("[{:.4g}, {:.4g}]", row.lower, row.upper), row.p95, row.max, row.seconds,
                first || plan.seeds.size() < 2 ? "" : fmt::format("{:.2g}", row.p_value),
                row.failures > 0 ? fmt::format("  ({} failed: {})", row.failures,
                                               [&] {
@@ -341,10 +341,8 @@ std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::Matr
       ranks.push_back({plan.methods[static_cast<std::size_t>(m)].text, average(m),
                        vn::critical_difference(cases.cols(), cases.rows()) / 2});
     const auto path = folder / "ranks.svg";
-    keep(intervals_svg(
-             path,
-             fmt::format("Average ranks over {} cases: where two bars do not overlap, methods differ", cases.rows()),
-             "average rank, 1 is best", ranks),
+    keep(intervals_svg(path, fmt::format("Average ranks over {} cases: bars that do not overlap differ", cases.rows()),
+                       "average rank, 1 is best", ranks),
          path);
   }
   return files;
@@ -405,20 +403,29 @@ Request read_command_line(Program& program) {
   std::vector<std::string> methods;
   program.add_option("plan", plan_file, "the whole grid as a JSON file, in place of the options up to --nodes",
                      "PLAN.json");
-  program.add_flag("--list", out.listed, "all methods, and how they are written");
+  program.add_flag("--list", out.listed, "print all methods, and how they are written");
   program.add_option("--methods", methods, "what to compare, see --list", "M,...").delimiter(',');
   program.add_setting("--robot", problem.robot, "an arm of the catalogue, or a JSON file", "R");
-  program.add_setting("--errors", problem.errors, "of a simulated arm; full: joint errors too", "geometric|full");
-  program.add_setting("--region", problem.region, "joints of simulated poses", "operating|full");
-  program.add_setting("--noise-mm", problem.noise_mm, "of simulated positions, per component", "S");
+  program.add_setting("--errors", problem.errors, "errors of a simulated arm; full: joint errors too",
+                      "geometric|full");
+  program.add_option(
+      "--region", problem.region,
+      "joint ranges of simulated poses: operating (of the abb_irb120, and its default) or full, the joint limits",
+      "operating|full");
+  program.add_setting("--noise-mm", problem.noise_mm, "standard deviation of simulated positions, per component", "S");
   program.add_option("--data", problem.data, "measured poses instead", "FILE");
   problem.csv.add_to(program, "", "--data");
+  program.group(support::Group::validation);
   program.add_setting("--split", problem.split, "which fifth of the measured poses is held out", "random|region|time");
+  program.group(support::Group::input);
   program.add_setting("--poses", plan.poses, "to learn from; 0: all measured ones", "N,...").delimiter(',');
-  program.add_setting("--seeds", plan.seeds, "of data and fits", "S,...").delimiter(',');
-  program.add_setting("--evaluations", plan.evaluations, "of every search", "E");
-  program.add_setting("--seconds", plan.seconds, "of every search and iterative fit instead; 0: by evaluations", "T");
-  program.add_setting("--nodes", plan.nodes, "of hidden layers", "H");
+  program.add_setting("--seeds", plan.seeds, "seeds of data and fits", "S,...").delimiter(',');
+  program.group(support::Group::model);
+  program.add_setting("--evaluations", plan.evaluations, "evaluations that each search has", "E");
+  program.add_setting("--seconds", plan.seconds,
+                      "seconds that each search and iterative fit has instead; 0: by evaluations", "T");
+  program.add_setting("--nodes", plan.nodes, "nodes of hidden layers", "H");
+  program.group(support::Group::output);
   program
       .add_option("--results", out.results, "file that keeps every cell; a run goes on where another one stopped",
                   "FILE")
@@ -508,9 +515,10 @@ int body(Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("compare",
-                              "Learners and searches on equal terms: the same poses, budget and seeds for all, on\n"
-                              "simulated or measured arms. A run that was stopped goes on where it was; under mpirun\n"
-                              "the ranks share the work.",
-                              argc, argv, body);
+  const support::About about{"compare",
+                             "Compares learners and searches on equal terms: the same poses, budget and seeds for all.",
+                             {"compare --methods identification,geometry+elm,pso:elm --seeds 1,2,3 --out comparison",
+                              "compare --data measured.csv --robot ur10 --methods jointwise,jointwise+pso:elm"},
+                             "done; a run that was stopped goes on where it was"};
+  return support::run_program(about, argc, argv, body);
 }

@@ -20,6 +20,7 @@
 #include "json_file.hpp"
 #include "payload_option.hpp"
 #include "program_correction.hpp"
+#include "progress.hpp"
 #include "vernier/compensation/correct_path.hpp"
 #include "vernier/core/same_value.hpp"
 #include "vernier/data/csv.hpp"
@@ -270,6 +271,7 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
     }
     if (!path.points.empty()) options.start = path.points.back().command;
   };
+  support::Working working("correcting");
   for (const Run<N>& run : runs_of(targets, robot, options.limits)) {
     options.limits = run.limits;
     const auto begin = targets.begin() + static_cast<std::ptrdiff_t>(run.first);
@@ -277,6 +279,7 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
     support::with_branches(robot.nominal(), arm.change(), run.limits,
                            [&](const auto& roots) { correct_run(run, part, roots); });
   }
+  working.finish();
   if (!settings.branches)
     for (const auto& target : targets) report.linear = report.linear || target.motion == vn::Motion::linear;
   report.before = path.before;
@@ -295,10 +298,17 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
                            p.gate,
                            p.singularities,
                            {}});
+    if (p.command.allFinite()) report.rows.back().point = arm.position(p.command);
   }
   if (settings.radius && !settings.branches && saved.estimate() != nullptr) {
-    const std::vector<double> radii = robot.radii_95(commands);
-    for (std::size_t i = 0; i < radii.size(); ++i) report.rows[i].radius = radii[i];
+    constexpr vn::Index block = 64;  // at a time, each command for itself
+    support::ProgressBar bar("radii of 95 %", commands.rows());
+    for (vn::Index first = 0; first < commands.rows(); first += block) {
+      const vn::Index count = std::min(block, commands.rows() - first);
+      const std::vector<double> radii = robot.radii_95(vn::JointRows<N>(commands.middleRows(first, count)));
+      for (std::size_t i = 0; i < radii.size(); ++i) report.rows[static_cast<std::size_t>(first) + i].radius = radii[i];
+      bar.update(first + count);
+    }
   }
   return report;
 }
@@ -308,17 +318,20 @@ int run(support::Program& program) {
   support::ProgramCorrection in_place;
   bool no_approach = false, no_radius = false;
   program.add_option("--model", settings.model, "calibrated model that calibrate saved", "FILE").required();
-  program.add_option(
-      "--targets", settings.targets,
-      "joints q1_rad.. at which the nominal arm stands where the actual one is to go, or poses x_mm, y_mm, "
-      "z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements; a column move says how the arm goes "
-      "there: j (joint move) or l (linear move)",
-      "FILE");
+  program
+      .add_option("--targets", settings.targets,
+                  "joints q1_rad.. at which the nominal arm stands where the actual one is to go, or poses x_mm, y_mm, "
+                  "z_mm, rx_rad, ry_rad, rz_rad in the frame of the measurements; a column move says how the arm goes "
+                  "there: j (joint move) or l (linear move)",
+                  "FILE")
+      .required_without("--program");
   settings.csv.add_to(program, "", "--targets");
   settings.csv.add_euler_to(program);
   support::add_program_options(program, in_place);
+  program.group(support::Group::input);
   program.add_flag("--poses", settings.poses,
                    "of a file with joints and poses, the poses are the targets; the joints choose the branch");
+  program.group(support::Group::model);
   program.add_flag("--linear", settings.linear, "all moves are linear, where the file has no column move");
   program
       .add_setting("--tolerance-mm", settings.tolerance_mm,
@@ -353,7 +366,6 @@ int run(support::Program& program) {
   settings.out = program.common().out;
   settings.approach = !no_approach;
   settings.radius = !no_radius;
-  if (settings.out.empty()) throw support::UsageError("--out is required");
   if (settings.targets.empty() == in_place.program.empty())
     throw support::UsageError("either --targets or --program is required");
   if (!in_place.program.empty())
@@ -383,5 +395,12 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("correct", "Targets in, corrected joint commands out.", argc, argv, run);
+  const support::About about{
+      "correct",
+      "Corrects targets or a robot program with a calibrated model, so that the real tool reaches them.",
+      {"correct --model model.json --targets targets.csv --linear --out commands.csv",
+       "correct --model model.json --program main.mod --out corrected.mod"},
+      "every target is corrected",
+      "not done, or a target is not met; one line on standard error says why"};
+  return support::run_program(about, argc, argv, run);
 }

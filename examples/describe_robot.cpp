@@ -159,23 +159,22 @@ void print_joints(const ShownArm& arm, const vn::RobotDescription& robot) {
 
 /// The arm seen from the side and from above, at two configurations.
 bool draw(const std::filesystem::path& path, const ShownArm& arm, const std::vector<vn::VectorX>& joints) {
-  std::vector<support::Series> series;
+  support::Panel side{"from the side: z over x", {}}, above{"from above: y over x", {}};
   const char* const names[] = {"at zero", "at the other joint values"};
   for (std::size_t k = 0; k < joints.size(); ++k) {
-    support::Series side{
-        fmt::format("{}, from the side", names[k]), {}, {}, support::Style::lines, static_cast<int>(k)},
-        above{fmt::format("{}, from above", names[k]), {}, {}, support::Style::dashed, static_cast<int>(k)};
+    support::Series in_side{names[k], {}, {}, support::Style::lines, k == 0 ? 0 : 4};
+    support::Series in_above = in_side;
     for (const vn::Vector3& point : arm.links(joints[k])) {
-      side.x.push_back(point.x());
-      side.y.push_back(point.z());
-      above.x.push_back(point.x());
-      above.y.push_back(point.y());
+      in_side.x.push_back(point.x());
+      in_side.y.push_back(point.z());
+      in_above.x.push_back(point.x());
+      in_above.y.push_back(point.y());
     }
-    series.push_back(side);
-    series.push_back(above);
+    side.series.push_back(in_side);
+    above.series.push_back(in_above);
   }
-  return support::plot_svg(path, "The arm: base, frames behind the joints, tool", "x [m]",
-                           "z from the side, y from above [m]", series, {.equal_axes = true});
+  return support::panels_svg(path, "The arm: base, frames behind the joints, tool", "x [m]", "z, y [m]", {side, above},
+                             {.equal_axes = true});
 }
 
 int run(support::Program& program) {
@@ -246,9 +245,9 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program(
-      "describe_robot",
-      "Prints an arm as it is understood: rows, joints of the controller, limits, axes, poses, reach; and how the tool "
-      "moves with each joint, to be compared with the pendant.",
-      argc, argv, run);
+  const support::About about{"describe_robot",
+                             "Prints an arm as it is understood, to be compared with the pendant of the controller.",
+                             {"describe_robot --robot abb_irb120 --joints 10,20,30,0,45,0",
+                              "describe_robot --robot my_arm.urdf --base-link base_link --tip-link tool0"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -9,6 +9,7 @@
 
 #include "board_detection.hpp"
 #include "cli.hpp"
+#include "progress.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/io/camera_files.hpp"
 
@@ -37,11 +38,15 @@ int run(support::Program& program) {
   std::set<std::string> names;
   std::size_t found = 0;
   vn::Index corners = 0;
+  support::ProgressBar bar("images", static_cast<vn::Index>(files.size()));
+  vn::Index seen = 0;
+  std::vector<std::string> without;
   for (const std::string& file : files) {
     const vn::View view = support::detect_board(board, file);
     if (!names.insert(view.image).second)
       throw support::UsageError("--images: two files are called " + view.image + ", in different folders");
-    if (view.corners.empty()) fmt::print("{}: no board\n", file);
+    if (view.corners.empty()) without.push_back(file);
+    bar.update(++seen);
     found += view.corners.empty() ? 0 : 1;
     corners += static_cast<vn::Index>(view.corners.size());
     for (std::size_t i = 0; i < view.corners.size(); ++i)
@@ -49,6 +54,8 @@ int run(support::Program& program) {
                          view.pixels[i](1), view.width, view.height, camera.empty() ? "" : "," + camera,
                          place.empty() ? "" : "," + place);
   }
+  bar.finish();
+  for (const std::string& file : without) fmt::print("{}: no board\n", file);
   vn::write_file(program.common().out, out);
   fmt::print("{} corners in {} of {} images: {}\n", corners, found, files.size(), support::shown(program.common().out));
   return 0;
@@ -57,6 +64,9 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("detect_board", "Images of a printed board in; its corners out, for calibrate --corners.",
-                              argc, argv, run);
+  const support::About about{"detect_board",
+                             "Finds the corners of a printed board in images, for calibrate --corners.",
+                             {"detect_board --board board.json --images 'shots/*.png' --out corners.csv",
+                              "detect_board --board board.json --images 'left/*.png' --camera left --out left.csv"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -39,12 +39,13 @@ int run(support::Program& program) {
   program.add_option("--model", model, "calibrated model that calibrate saved", "FILE").required();
   program.add_option("--results", results,
                      "what calibrate wrote by --json, in place of the held-out error that the model keeps", "FILE");
+  program.group(support::Group::output);
   program.add_setting("--name", name, "what all names in the file begin with", "NAME");
+  program.group(support::Group::model);
   support::PayloadOption payload;
   payload.add_to(program);
   program.parse("", "write the C header to this file", "FILE");
   const std::string out = program.common().out;
-  if (out.empty()) throw support::UsageError("--out is required");
 
   vn::SavedModel saved = vn::read_model(model);
   vn::CExport options{.name = name};
@@ -73,7 +74,9 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("export_c",
-                              "A calibrated model in; one C header that predicts poses and corrects commands out.",
-                              argc, argv, run);
+  const support::About about{"export_c",
+                             "Writes a calibrated model as one C header that predicts poses and corrects commands.",
+                             {"export_c --model model.json --out arm.h",
+                              "export_c --model model.json --name cell3 --payload-kg 2.5 --out cell3.h"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -12,6 +12,7 @@
 #include "file_name.hpp"
 #include "json_file.hpp"
 #include "pose_calibration.hpp"
+#include "progress.hpp"
 #include "robot_choice.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/urdf.hpp"
@@ -124,7 +125,10 @@ int run(support::Program& program) {
   o.csv.add_to(program);
   o.csv.add_euler_to(program);
   o.sensor.add_to(program);
+  program.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
+  program.group(support::Group::validation);
   program.add_setting("--test-every", o.test_every, "hold out every K-th row of the data", "K").within(2, 1000000);
+  program.group(support::Group::output);
   program.add_output("--urdf", o.urdf,
                      "write the file of --robot (URDF) with the calibrated origins of its joints to this file");
   const support::Option kinematics = program.add_output(
@@ -138,7 +142,6 @@ int run(support::Program& program) {
   program.add_flag("--with-base", o.with_base, "write the base frame, too: that of the sensor");
   program.add_flag("--with-tool", o.with_tool,
                    "write the tool frame, too: the point that was measured becomes the tip link");
-  program.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
   program.add_setting("--date", o.date, "date written into the files", "DATE");
   program.parse("", nullptr);
   o.sensor.note(program);
@@ -164,7 +167,9 @@ int run(support::Program& program) {
                               "' is behind no fixed joint, which could hold the tool");
   const vn::ThreadExecutor executor(program.common().threads);
   const vn::FitOptions fit{.seed = program.common().seed, .executor = executor};
+  support::Working working("calibrating");
   const Outcome out = export_arm(o, robot, chain, fit);
+  working.finish();
   for (const ExportedFile& file : out.files) vn::write_file(file.path, file.text);
   print(o, robot, out);
   if (!program.common().json.empty()) {
@@ -187,10 +192,10 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program(
-      "export_robot",
-      "Measured poses in; the arm's calibrated geometry out, as URDF or as the kinematics file of Universal Robots' "
-      "driver. Such files hold geometry alone, so it is identified alone; errors at held-out poses, with the files and "
-      "with the full model, are printed and written into them.",
-      argc, argv, run);
+  const support::About about{"export_robot",
+                             "Writes the calibrated geometry of an arm as its URDF file or as the kinematics file of "
+                             "Universal Robots' driver.",
+                             {"export_robot --robot my_arm.urdf --data measured.csv --urdf calibrated.urdf",
+                              "export_robot --robot ur10 --data measured.csv --ur-kinematics my_ur10.yaml"}};
+  return support::run_program(about, argc, argv, run);
 }

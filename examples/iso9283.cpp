@@ -56,8 +56,8 @@ std::string milli(const vn::Vector3& v) {
 
 /// Deviations of the visits of a pose from their barycentre, with the circle of RP.
 void plot_visits(const std::string& prefix, const vn::Iso9283Pose& pose, const std::vector<vn::Iso9283Visit>& visits) {
-  support::Series xy{"y over x", {}, {}, support::Style::points, 5}, xz{"z over x", {}, {}, support::Style::points, 4},
-      circle{"RP", {}, {}, support::Style::dashed, 0};
+  support::Series xy{"visits", {}, {}, support::Style::points, 5}, xz = xy,
+                                                                   circle{"RP", {}, {}, support::Style::dashed, 0};
   for (const auto& visit : visits) {
     if (visit.pose != pose.pose || visit.direction != pose.direction) continue;
     const vn::Vector3 d = 1e6 * (visit.measured.translation() - pose.mean.translation());
@@ -70,8 +70,8 @@ void plot_visits(const std::string& prefix, const vn::Iso9283Pose& pose, const s
     circle.y.push_back(1e6 * pose.rp * std::sin(k * std::numbers::pi / 36));
   }
   const std::string file = fmt::format("{}_p{}.svg", prefix, pose.pose);
-  if (support::plot_svg(file, fmt::format("Visits of P{} about their barycentre", pose.pose), "x [um]", "y, z [um]",
-                        {xy, xz, circle}, {.width = 640, .height = 660, .equal_axes = true}))
+  if (support::panels_svg(file, fmt::format("Visits of P{} about their barycentre", pose.pose), "x [um]", "y, z [um]",
+                          {{"y over x", {xy, circle}}, {"z over x", {xz, circle}}}, {.equal_axes = true}))
     fmt::print("Visits of P{}: {}\n", pose.pose, file);
 }
 
@@ -132,6 +132,7 @@ int run(support::Program& program) {
       "measured runs along the path: columns cycle, x_mm .., optionally rx_rad .., in the order of measuring", "FILE");
   settings.csv.add_to(program);
   settings.csv.add_euler_to(program);
+  program.group(support::Group::model);
   program.add_setting("--points", settings.points, "points of the path that are compared", "M").within(1, 100000);
   program.add_flag("--plan", settings.plan, "write the five poses of a test to --out instead");
   program.add_option("--centre-mm", settings.centre, "centre of the cube", "X,Y,Z").delimiter(',');
@@ -200,5 +201,10 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("iso9283", "Accuracy and repeatability after ISO 9283.", argc, argv, run);
+  const support::About about{
+      "iso9283",
+      "Computes accuracy and repeatability after ISO 9283 from repeated visits, or writes the poses of such a test.",
+      {"iso9283 --plan --centre-mm 400,0,500 --edge-mm 300 --out poses.csv",
+       "iso9283 --data visits.csv --commanded poses.csv --out figures/iso"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -201,15 +201,16 @@ int run(support::Program& program) {
       .within(0, 1000);
   program.add_option("--key", o.key, "column of --joints with the names of the points; without it they pair by order",
                      "COLUMN");
+  program.group(support::Group::model);
   o.robot.add_to(program).description(
       "name in the catalogue, or a file: its nominal kinematics prove the order, or check the names, the unit and the "
       "frame");
+  program.group(support::Group::output);
   program.add_flag("--leave-out", o.leave_out,
                    "write the pairs that are proven although something is wrong: rows and points without a partner are "
                    "left out, swapped ones exchanged");
   program.parse("", "write the measured poses to this file", "FILE");
   o.out = program.common().out;
-  if (o.out.empty()) throw support::UsageError("--out is required");
   if (o.key.empty() && o.robot.robot.empty())
     throw support::UsageError("--key pairs by name; without it --robot is needed to prove the order");
   const vn::PointTable table = read_points(o);
@@ -249,8 +250,13 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program(
+  const support::About about{
       "join_measurements",
-      "Commanded joints and the points that a tracker measured there in, measured poses as calibrate reads them out.",
-      argc, argv, run);
+      "Matches a tracker's point list to commanded joint values and writes a pose file for calibrate.",
+      {"join_measurements --joints poses.csv --points points.txt --preset sa --unit mm --robot ur10 --out measured.csv",
+       "join_measurements --joints poses.csv --key name --points points.csv --columns name,x,y,z --separator , --unit "
+       "mm --out measured.csv"},
+      "done",
+      "not done: rows and points that do not match are listed, or one line says why"};
+  return support::run_program(about, argc, argv, run);
 }

@@ -29,6 +29,7 @@ int run(support::Program& program) {
       "--dictionary", dictionary, "of the markers: DICT_4X4_50, _100, _250, DICT_5X5_50, _100, _250", "NAME");
   marker.needs(markers);
   markers.needs(marker);
+  program.group(support::Group::output);
   program.add_output("--svg", svg, "the board to be printed, in its true size").required();
   program.add_output("--board", description, "its description, for detect_board and calibrate").required();
   program.parse("make_board_out");
@@ -61,6 +62,10 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("make_board", "A chessboard or ChArUco board as SVG, and its description.", argc, argv,
-                              run);
+  const support::About about{"make_board",
+                             "Draws a chessboard or ChArUco board to be printed, and writes its description.",
+                             {"make_board --rows 8 --columns 11 --square-mm 20 --svg board.svg --board board.json",
+                              "make_board --rows 8 --columns 11 --square-mm 20 --marker-mm 15 --dictionary DICT_4X4_50 "
+                              "--svg charuco.svg --board charuco.json"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -426,38 +426,44 @@ std::vector<std::string> draw_figures(const Run& run, const std::filesystem::pat
   for (std::size_t set = 0; set < sets.size(); ++set) {
     const vn::VectorX before = run.errors[set][0].position;
     const auto order = vn::argsort(before);
-    std::vector<support::Series> curves;
+    const auto shown = [&](std::size_t m) {
+      return vn::VectorX((run.errors[set][m].position * 1e3).cwiseMax(smallest_shown));
+    };
+    const auto curve = [&](std::size_t m, const char* name, support::Style style, int of_colour) {
+      support::Series series{name, {}, {}, style, of_colour};
+      const vn::VectorX mm = shown(m);
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        series.x.push_back(static_cast<double>(i + 1));
+        series.y.push_back(mm(order[i]));
+      }
+      return series;
+    };
+    std::vector<support::Panel> panels;
     std::vector<support::Sample> samples;
     std::string below;
     for (const std::size_t m : run.ran) {
       if (m == trained) continue;  // the palette has a colour for one of the two
       const vn::VectorX mm = run.errors[set][m].position * 1e3;
       if (mm.maxCoeff() < smallest_shown) {
-        below += fmt::format("; {}: all below {} mm", methods[m].title, smallest_shown);
+        below += fmt::format(" ({}: below {} mm)", methods[m].title, smallest_shown);
         continue;
       }
-      support::Series series{
-          methods[m].title, {}, {}, m == 0 ? support::Style::lines : support::Style::points, colour(m)};
-      for (std::size_t i = 0; i < order.size(); ++i) {
-        series.x.push_back(static_cast<double>(i + 1));
-        series.y.push_back(std::max(mm(order[i]), smallest_shown));
-      }
-      curves.push_back(std::move(series));
-      samples.push_back({methods[m].title, values(mm.cwiseMax(smallest_shown)), colour(m)});
+      samples.push_back({methods[m].title, values(shown(m)), colour(m)});
+      if (m > 0)
+        panels.push_back({methods[m].title,
+                          {curve(m, "after compensation", support::Style::points, 5),
+                           curve(0, "before", support::Style::lines, 0)}});
     }
-    std::rotate(curves.begin(), curves.begin() + 1,
-                curves.end());  // the line before compensation is drawn last, on top
     const auto errors_file = folder / fmt::format("errors_{}.svg", sets[set].name);
-    keep(support::plot_svg(errors_file, fmt::format("Error of each pose before and after, {}", sets[set].title),
-                           fmt::format("pose, in order of its error before compensation{}", below),
-                           "position error [mm]", curves, {.log_y = true}),
+    keep(support::panels_svg(errors_file, fmt::format("Error of each pose, {}{}", sets[set].title, below),
+                             "pose, in order of its error before compensation", "position error [mm]", panels,
+                             {.log_y = true}),
          errors_file);
     const auto distribution_file = folder / fmt::format("distribution_{}.svg", sets[set].name);
-    keep(
-        support::plot_svg(distribution_file, fmt::format("Distribution of the error, {}", sets[set].title),
-                          fmt::format("position error [mm]{}", below), "share of the poses with this error or less [%]",
-                          support::cumulative(samples), {.log_x = true}),
-        distribution_file);
+    keep(support::plot_svg(distribution_file, fmt::format("Distribution of the error, {}{}", sets[set].title, below),
+                           "position error [mm]", "share of the poses with this error or less [%]",
+                           support::cumulative(samples), {.log_x = true}),
+         distribution_file);
   }
   std::vector<support::Series> convergence;
   for (std::size_t m = 1; m < trained; ++m)
@@ -478,6 +484,7 @@ int body(support::Program& program) {
   std::optional<double> budget;
   double noise_mm = 0;
   std::string region = "operating", positions = "unbounded";
+  program.group(support::Group::model);
   program.add_flag("--quick", settings.quick,
                    "1000 poses to learn from, 200 test, a quarter of the generations: under a minute");
   program.add_flag("--varpro", settings.var_pro,
@@ -485,14 +492,18 @@ int body(support::Program& program) {
   program
       .add_setting("--runs", settings.runs, "repeat over K error tables and seeds; medians, ranges, paired tests", "K")
       .within(1, 1000);
+  program.group(support::Group::input);
   program.add_setting("--region", region, "joint ranges of all poses", "operating|full").one_of({"operating", "full"});
+  program.group(support::Group::model);
   program
       .add_setting("--positions", positions, "whether PSO's particles may leave [-1, 1]; the paper lets them",
                    "unbounded|clamped")
       .one_of({"unbounded", "clamped"});
+  program.group(support::Group::input);
   program.add_option("--train", train, "poses to learn from; the paper has 5000", "N").within(1, 1000000);
   program.add_option("--test", test, "poses of the test set; the paper has 400", "N").within(1, 1000000);
   program.add_option("--fresh", fresh, "poses of the random set; the paper has 200", "N").within(1, 1000000);
+  program.group(support::Group::model);
   program.add_option("--scale-budget", budget, "factor of the paper's generations and iterations", "F")
       .within(1e-4, 100.0);
   program
@@ -501,6 +512,7 @@ int body(support::Program& program) {
       .within(0, 1000000);
   program.add_setting("--noise-mm", noise_mm, "standard deviation of the measured positions, per component", "S")
       .within(0.0, 100.0);
+  program.group(support::Group::output);
   program.add_output("--write-poses", settings.poses_file, "write simulated measured poses, for `calibrate`");
   program.parse("paper_comparison_out");
   settings.train = train.value_or(settings.quick ? 1000 : 5000);
@@ -563,9 +575,9 @@ int body(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program(
+  const support::About about{
       "paper_comparison",
-      "Learned compensation of an ABB IRB 120 (simulated) as in the paper of Feng, Dong and Jin,\n"
-      "beside the classical identification from the same poses.",
-      argc, argv, body);
+      "Repeats the experiment of Feng, Dong and Jin on a simulated ABB IRB 120, beside the classical identification.",
+      {"paper_comparison --quick", "paper_comparison --runs 20 --seed 1 --out figures --json results.json"}};
+  return support::run_program(about, argc, argv, body);
 }

@@ -14,6 +14,7 @@
 #include "dispatch.hpp"
 #include "json_file.hpp"
 #include "plan_figures.hpp"
+#include "progress.hpp"
 #include "robot_choice.hpp"
 #include "sensor_options.hpp"
 #include "vernier/data/csv.hpp"
@@ -136,6 +137,7 @@ support::PlanOutcome plan_arm(const Settings& o, const vn::RobotDescription& des
   options.bin_count = o.cover;
   options.bound_iterations = o.bound ? 10 : 0;
   support::PlanOutcome out = o.choose > 0 ? choose_rows(o, robot, options) : plan_new(o, robot, options, seed);
+  out.oriented = options.oriented;
   const auto types = robot.arm.model().joint_types();
   out.types.assign(types.begin(), types.end());
   return out;
@@ -183,14 +185,18 @@ int run(support::Program& program) {
   choose.needs(from).excludes(count).excludes(add);
   count.excludes(add);
   from.needs(choose);
+  program.group(support::Group::validation);
   const support::Option every =
       program.add_option("--test-every", o.test_every, "never choose every K-th row of --from", "K")
           .within(2, 1000000)
           .needs(from);
+  program.group(support::Group::output);
   program.add_output("--held-out", o.held_out, "write those rows to this file").needs(every);
+  program.group(support::Group::input);
   o.csv.add_to(program);
   o.csv.add_euler_to(program);
   o.sensor.add_to(program);
+  program.group(support::Group::model);
   program.add_option("--tracker", o.tracker, "position of the tracker in the base frame of the arm [mm]", "X,Y,Z")
       .delimiter(',')
       .expected(3)
@@ -211,28 +217,29 @@ int run(support::Program& program) {
           .add_option("--region", o.region, "joints q1_rad.. of the working region: best there, not all over", "FILE")
           .excludes(choose);
   program
-      .add_option("--region-box", o.region_box, "likewise, as a box of tool positions in the base frame [mm]",
+      .add_option("--region-box", o.region_box, "the working region as a box of tool positions in the base frame [mm]",
                   "X0,X1,Y0,Y1,Z0,Z1")
       .delimiter(',')
       .expected(6)
       .excludes(choose)
       .excludes(region);
-  program.add_flag("--orientations", o.orientations, "orientations are measured, too");
+  program.add_flag("--orientations", o.orientations, "orientations are measured as well");
   program
-      .add_setting("--cover", o.cover, "poses in every 10 deg of every joint that can be reached, before anything else",
+      .add_setting("--cover", o.cover, "minimum number of poses in each 10 degrees of each joint that can be reached",
                    "N")
       .within(0, 1000);
   program.add_setting("--candidates", o.candidates, "number of random poses to choose from", "N").within(3, 1000000);
-  program.add_flag("--bound", o.bound, "compute how much information no choice exceeds");
+  program.add_flag("--bound", o.bound, "print an upper bound of the information that as many poses can have");
   program.parse("", "write the poses to this file", "FILE");
   o.sensor.note(program);
   o.out = program.common().out;
-  if (o.out.empty()) throw support::UsageError("--out is required");
   if (o.count + o.add + o.choose == 0) throw support::UsageError("one of --count, --add and --choose is required");
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   o.csv.controller = robot.controller;
+  support::Working working("planning");
   const support::PlanOutcome found =
       support::dispatch_dof(robot.dof(), [&](auto n) { return plan_arm<n()>(o, robot, program.common().seed); });
+  working.finish();
 
   const vn::PlannedMeasurements& plan = found.plan;
   fmt::print("{}: {} poses of {} candidates, to determine {} unknowns\n", robot.name, plan.chosen.size(),
@@ -252,9 +259,19 @@ int run(support::Program& program) {
         found.measured, errors(0) * 1e3, errors(half) * 1e3, errors(all) * 1e3);
   if (plan.enough() < all)
     fmt::print("From {} poses on, ten more reduce the predicted error by less than 2 %\n", plan.enough());
+  const vn::Index values = all * (found.oriented ? 6 : 3);
+  if (values < plan.unknowns)
+    fmt::print(
+        "These poses measure {} values, fewer than the unknowns; expected sizes supply the rest. {} poses would "
+        "measure as many\n",
+        values, (plan.unknowns + values / all - 1) / (values / all));
+  bool gap = false;
   for (int j = 0; j < robot.dof(); ++j)
-    if (const std::string gaps = support::gaps_of(found, j); !gaps.empty())
-      fmt::print("Joint {} could be measured, but is not, in {}\n", j + 1, gaps);
+    if (const std::string gaps = support::gaps_of(found, j); !gaps.empty()) {
+      fmt::print("Not covered by these poses: q{} in {}\n", j + 1, gaps);
+      gap = true;
+    }
+  if (gap && o.choose == 0 && o.cover == 0) fmt::print("--cover 1 plans a pose in each of these ranges\n");
   if (o.choose == 0)
     fmt::print("{} visits: the first three register the tracker, the first pose is visited {} times to see drift\n",
                plan.visits.size(), std::count(plan.visits.begin(), plan.visits.end(), plan.visits.front()));
@@ -269,5 +286,10 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("plan_poses", "Which poses to measure for a calibration.", argc, argv, run);
+  const support::About about{
+      "plan_poses",
+      "Plans which poses to measure for a calibration, or chooses the most useful rows of a measured file.",
+      {"plan_poses --robot abb_irb120 --count 100 --orientations --out poses.csv",
+       "plan_poses --robot abb_irb120 --data measured.csv --add 20 --out more.csv"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -57,8 +57,10 @@ int run(support::Program& program) {
   program.add_option("--poses", o.poses, "joints q1_rad.. (q1_m.. of prismatic ones), visited in their order", "FILE")
       .required();
   o.csv.add_to(program);
+  program.group(support::Group::model);
   program.add_setting("--noise-mm", o.noise_mm, "standard deviation of a position, per component", "MM").not_negative();
-  program.add_setting("--noise-mrad", o.noise_mrad, "of an orientation", "MRAD").not_negative();
+  program.add_setting("--noise-mrad", o.noise_mrad, "standard deviation of an orientation, per component", "MRAD")
+      .not_negative();
   program.add_setting("--backlash-mrad", o.backlash_mrad, "half the play of every gear", "MRAD").not_negative();
   program
       .add_setting("--gears-urad", o.gears_urad,
@@ -74,7 +76,6 @@ int run(support::Program& program) {
   program.add_flag("--in-turn", o.in_turn, "each pose is measured with one of these reflectors, in turn");
   program.parse("", "write the measured poses to this file", "FILE");
   const std::string out = program.common().out;
-  if (out.empty()) throw support::UsageError("--out is required");
   if (o.in_turn && o.points < 2) throw support::UsageError("--in-turn needs --points of two or more");
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   o.csv.controller = robot.controller;
@@ -91,8 +92,10 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program("simulate_measurements",
-                              "Measures a virtual arm. Links, gear ratios, coupling, compliance, gears and backlash "
-                              "have errors, drawn from the seed.",
-                              argc, argv, run);
+  const support::About about{
+      "simulate_measurements",
+      "Simulates the measurement of an arm whose links, gears, encoders and joints have errors.",
+      {"simulate_measurements --robot abb_irb120 --poses poses.csv --out measured.csv",
+       "simulate_measurements --robot rail.json --poses poses.csv --noise-mm 0.1 --positions-only --out measured.csv"}};
+  return support::run_program(about, argc, argv, run);
 }

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string>
 
 #include "cli.hpp"
+#include "console.hpp"
 #include "csv_options.hpp"
 #include "instances.hpp"
 #include "json_file.hpp"
+#include "progress.hpp"
 #include "report_page.hpp"
 #include "sensor_options.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
@@ -26,6 +29,15 @@ struct Options {
   bool registered = false, tool = false, positions_only = false, no_approach = false;
   double accept_mm = 0, level = 0.05;
 };
+
+/// The arm and where its calibration comes from, as far as the model says so.
+std::string calibrated(const std::string& name, const vn::Provenance& from) {
+  std::string out = name;
+  if (!from.date.empty()) out += fmt::format(", calibrated {}", from.date);
+  if (from.rows > 0) out += fmt::format("{} from {} rows", from.date.empty() ? ", calibrated" : "", from.rows);
+  if (from.rows > 0 && !from.data_file.empty()) out += fmt::format(" of {}", from.data_file);
+  return out;
+}
 
 template <int N>
 int verify_arm(const support::Program& program, Options& o, const vn::SavedModel& model) {
@@ -47,13 +59,17 @@ int verify_arm(const support::Program& program, Options& o, const vn::SavedModel
   options.sensors.use_orientations = !o.positions_only;
   options.expected_error = robot.provenance().expected_error();
   options.fitted_poses = robot.provenance().fitted_to(data.origin().hashes.front());
+  support::Working working("verifying");
   const vn::VerificationReport report =
       vn::verify_calibration(robot.model(), *robot.estimate(), data, options, learned);
+  working.finish();
 
-  fmt::print("{}, calibrated {} from {} rows of {}; {} poses of {}\n\n", robot.name(), robot.provenance().date,
-             robot.provenance().rows, robot.provenance().data_file, data.size(), o.data);
+  const std::string summary = report.summary(), verdict = summary.substr(0, summary.find('\n'));
+  fmt::print("{}{}\n", support::styled(verdict, report.valid ? support::Look::good : support::Look::bad),
+             summary.substr(verdict.size()));
+  fmt::print("Errors [mm]\n\n{}\n", vn::stage_table(vn::stages_of(report)));
   if (report.registration) fmt::print("{}\n", report.registration->summary());
-  fmt::print("Errors [mm]\n\n{}\n{}", vn::stage_table(vn::stages_of(report)), report.summary());
+  fmt::print("{}; {} poses of {}\n", calibrated(robot.name(), robot.provenance()), data.size(), o.data);
   const support::Json json = vn::to_json(report, robot.name());
   if (!program.common().json.empty()) support::write_json(program.common().json, json);
   if (!o.report.empty()) {
@@ -77,10 +93,12 @@ int run(support::Program& program) {
   o.csv.add_to(program);
   o.csv.add_euler_to(program);
   o.sensor.add_to(program);
+  program.group(support::Group::model);
   const support::Option registered = program.add_flag(
       "--registered", o.registered, "sensor and arm stand as they did: the base is not registered first");
   program.add_flag("--tool-remounted", o.tool, "the tool, or its probe, was taken off: it is registered, too")
       .excludes(registered);
+  program.group(support::Group::validation);
   program
       .add_option("--accept-mm", o.accept_mm,
                   "the calibration is valid as long as its mean position error does not exceed this [mm]; else as long "
@@ -89,9 +107,11 @@ int run(support::Program& program) {
       .within(1e-6, 1e3);
   program.add_setting("--level", o.level, "probability of a false alarm about an arm that has not changed", "P")
       .within(1e-6, 0.5);
+  program.group(support::Group::input);
   program.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
   program.add_flag("--no-approach", o.no_approach,
                    "rows are not in the order of measuring: no hysteresis by the direction of approach");
+  program.group(support::Group::output);
   program.add_output("--report", o.report, "write the results as one HTML page that needs nothing else");
   program.add_setting("--date", o.date, "date written into the report", "DATE");
   program.parse("", nullptr);
@@ -103,10 +123,12 @@ int run(support::Program& program) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return support::run_program(
+  const support::About about{
       "verify_calibration",
-      "Is a calibration still valid? A saved model and a few fresh poses in; base frame, errors, which joint has "
-      "changed, a verdict and what to do out. Exit code 0: valid. 1: not valid, or no answer, which a line on standard "
-      "error explains. 2: wrong usage.",
-      argc, argv, run);
+      "Tests with a few fresh poses whether a calibration is still valid, and says which joint has changed.",
+      {"verify_calibration --model model.json --data fresh.csv",
+       "verify_calibration --model model.json --data fresh.csv --accept-mm 0.2 --report verification.html"},
+      "the calibration is valid",
+      "not valid, or no answer, which a line on standard error explains"};
+  return support::run_program(about, argc, argv, run);
 }

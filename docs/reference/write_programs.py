@@ -11,7 +11,7 @@ import subprocess
 import sys
 
 NAMES = ["describe_robot", "plan_poses", "simulate_measurements", "join_measurements", "calibrate", "verify_calibration",
-         "correct", "export_robot", "export_c", "iso9283", "compare", "make_board", "detect_board"]
+         "correct", "export_robot", "export_c", "iso9283", "compare", "paper_comparison", "make_board", "detect_board"]
 HEAD = """# Reference: options and exit codes of the programs
 
 This page is written by `docs/reference/write_programs.py` from what each program prints for `--help`.
@@ -23,6 +23,13 @@ This page is written by `docs/reference/write_programs.py` from what each progra
 | 2 | wrong usage: an unknown option, a missing one, a value out of range |
 
 Each failure is one line on standard error. It names the program, and the file, the line or the value.
+
+What all programs have in common:
+
+- Values in square brackets are defaults. Options with `...` take several values.
+- Progress is shown on standard error, if that is a terminal. `--quiet` hides it, and all that is printed for people.
+- Colours are for terminals. They repeat what the words say, and `NO_COLOR` turns them off.
+- `source <(PROGRAM --completion)` completes options in bash ([install](../how-to/install.md)).
 """
 
 
@@ -34,8 +41,8 @@ def as_written(page, name):
 
 def options(programs, name):
     text = subprocess.run([programs / name, "--help"], check=True, stdout=subprocess.PIPE, text=True).stdout
-    text = re.sub(r"DATE=\d{4}-\d\d-\d\d", "DATE=TODAY", text)  # defaults that differ from day to day, from place to place
-    return re.sub(r"(--threads \w+=)\d+", r"\1PROCESSORS", text)
+    text = re.sub(r"\[\d{4}-\d\d-\d\d\]", "[TODAY]", text)  # defaults that differ from day to day, from place to place
+    return re.sub(r"(--threads T .*?\[)\d+\]", r"\1PROCESSORS]", text, flags=re.DOTALL)
 
 
 def main():

@@ -21,12 +21,14 @@ struct TypedValues {
 };
 
 void add_measurements(Program& program, CalibrationOptions& o, TypedValues& typed) {
-  program.add_option("--data", o.data,
-                     "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, time_s (or "
-                     "time_ms), temperature_c, segment (a new number: the approach is unknown) or from_q1_rad.. (where "
-                     "each pose was approached from), point (which of several reflectors; or all in one line, "
-                     "x1_mm .. zK_mm); one file a sensor station",
-                     "FILE");
+  program
+      .add_option("--data", o.data,
+                  "measured poses: q1_rad.., x_mm, y_mm, z_mm, optionally rx_rad, ry_rad, rz_rad, time_s (or "
+                  "time_ms), temperature_c, segment (a new number: the approach is unknown) or from_q1_rad.. (where "
+                  "each pose was approached from), point (which of several reflectors; or all in one line, "
+                  "x1_mm .. zK_mm); one file a sensor station",
+                  "FILE")
+      .required_without("--contacts or --flange-poses");
   const Option contacts =
       program.add_option("--contacts", o.contacts,
                          "what the tool point touched, beside the poses or, without --data, in their place: "
@@ -48,6 +50,7 @@ void add_measurements(Program& program, CalibrationOptions& o, TypedValues& type
 }
 
 void add_cameras(Program& program, CalibrationOptions& o) {
+  program.group(Group::input);
   Option corners = program.add_option(
       "--corners", o.corners,
       "corners of a printed board in images, with --data (columns image, q1_rad..) or --flange-poses: image, corner, "
@@ -97,6 +100,7 @@ void add_cameras(Program& program, CalibrationOptions& o) {
 }
 
 void add_split(Program& program, CalibrationOptions& o) {
+  program.group(Group::validation);
   Option test = program.add_option("--test", o.test, "held-out measured poses, as many files as --data", "FILE");
   Option every =
       program.add_setting("--test-every", o.test_every, "hold out every K-th row of the data", "K").within(2, 1000000);
@@ -118,9 +122,12 @@ void add_split(Program& program, CalibrationOptions& o) {
 }
 
 void add_results(Program& program, CalibrationOptions& o) {
+  program.group(Group::output);
   program.add_output("--save", o.save, "write the calibrated model to this file, for correct");
   program.add_flag("--verbose", o.verbose,
                    "print the details behind the verdict: identification, decisions, ranges, drift, lines, advice");
+  program.add_flag("--parameters", o.parameters, "print the identified frames and links, with standard deviations");
+  program.add_setting("--date", o.date, "date written into the model", "DATE");
   const Option report =
       program.add_output("--report", o.report, "write the results as one HTML page that needs nothing else");
   program
@@ -131,6 +138,7 @@ void add_results(Program& program, CalibrationOptions& o) {
 }
 
 void add_estimation(Program& program, CalibrationOptions& o, TypedValues& typed) {
+  program.group(Group::model);
   program.add_setting("--loss", typed.loss, "squared, or huber or cauchy, which tolerate outliers", "LOSS")
       .one_of({"squared", "huber", "cauchy"});
   program.add_option("--fix", o.calibrate.geometry.fixed,
@@ -163,7 +171,6 @@ void add_estimation(Program& program, CalibrationOptions& o, TypedValues& typed)
   program.add_flag("--keep-outliers", o.calibrate.keep_outliers,
                    "learn from training rows that are outliers, too; by default they are named and left out");
   program.add_flag("--positions-only", typed.positions_only, "ignore measured orientations");
-  program.add_setting("--date", o.date, "date written into the model", "DATE");
   program.add_option("--prior", o.prior,
                      "a calibrated model to start from: of this arm, earlier, or of another of its type; used as far "
                      "as left-out poses support it",
@@ -212,7 +219,7 @@ CalibrationOptions read_calibration_options(Program& program) {
   CalibrationOptions o;
   TypedValues typed;
   o.date = today();
-  o.robot.add_to(program);
+  o.robot.add_to(program).required_without("--model or --flange-poses");
   add_measurements(program, o, typed);
   add_split(program, o);
   add_results(program, o);

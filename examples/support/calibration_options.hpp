@@ -43,7 +43,8 @@ struct CalibrationOptions {
   std::string date;                          ///< written into the model
   std::string report;                        ///< file for the HTML page; empty: none
   double accept_mm = 0;                      ///< largest mean held-out error that is accepted [mm]; 0: not stated
-  bool verbose = false;                      ///< details are printed, too
+  bool verbose = false;                      ///< details are printed as well
+  bool parameters = false;                   ///< identified frames and links are printed as well
   bool reregister = false;                   ///< a saved model is registered again, instead of a calibration
   std::string model;                         ///< that model
   std::string free;                          ///< what may move then

@@ -5,6 +5,7 @@
 /// What the programs' command lines have in common: options, errors and exit codes. CLI11 parses them; its headers,
 /// which every file would compile anew for seconds, are included by cli.cpp alone.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -26,7 +27,7 @@ namespace support {
 struct CommonOptions {
   std::string json;        ///< file for the results as JSON; empty: none
   std::string out;         ///< folder for figures, or a file
-  std::uint64_t seed = 1;  ///< of everything random
+  std::uint64_t seed = 1;  ///< of all random numbers
   int threads = 1;         ///< that compute at a time
 };
 
@@ -36,17 +37,33 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Groups of options in the help, in this order.
+enum class Group { input, model, validation, output, general };
+
+/// What the help says of a program beside its options.
+struct About {
+  const char* name;
+  const char* purpose;                  ///< one sentence: what the program does
+  std::array<const char*, 2> examples;  ///< command lines that are as they would be typed
+  const char* done = "done";            ///< exit code 0
+  const char* failed = "not done, or in part; one line on standard error says why";  ///< exit code 1
+};
+
+/// Values that completion offers, by option.
+using OfferedValues = std::map<const CLI::Option*, std::vector<std::string>>;
+
 /// An option, while the command line is described.
 class Option {
  public:
-  explicit Option(CLI::Option* option) : option_(option) {}
+  Option(CLI::Option* option, OfferedValues& offered) : option_(option), offered_(&offered) {}
 
   Option required();
-  Option needs(Option other);     ///< refused without the other one
-  Option excludes(Option other);  ///< refused beside the other one
-  Option delimiter(char c);       ///< between the values of one argument
-  Option expected(int values);    ///< their number
-  Option one_value_each();        ///< of an option that may be repeated
+  Option required_without(const std::string& others);  ///< says so in the help; the program checks it
+  Option needs(Option other);                          ///< refused without the other one
+  Option excludes(Option other);                       ///< refused beside the other one
+  Option delimiter(char c);                            ///< between the values of one argument
+  Option expected(int values);                         ///< their number
+  Option one_value_each();                             ///< of an option that may be repeated
   Option description(const std::string& text);
   Option default_text(const std::string& text);  ///< shown in the help in place of the value
 
@@ -57,15 +74,18 @@ class Option {
   Option positive();                                     ///< refuses NaN and infinity, too
   Option not_negative();                                 ///< likewise
   Option one_of(const std::vector<std::string>& words);  ///< refuses all others
+  Option offers(const std::vector<std::string>& words);  ///< completion offers these, beside files if it takes a FILE
 
  private:
   CLI::Option* option_;
+  OfferedValues* offered_;
 };
 
 /// A program's command line.
 ///
 ///     int main(int argc, char** argv) {
-///       return support::run_program("calibrate", "Measured poses in, ...", argc, argv, [](support::Program& program) {
+///       const support::About about{"calibrate", "Calibrates a robot ...", {"calibrate --data ...", "calibrate ..."}};
+///       return support::run_program(about, argc, argv, [](support::Program& program) {
 ///         std::string data;
 ///         program.add_option("--data", data, "measured poses", "FILE").required();
 ///         program.parse("calibrate_out");
@@ -75,11 +95,13 @@ class Option {
 ///     }
 class Program {
  public:
-  Program(const char* name, const char* description, int argc, const char* const* argv);
+  Program(const About& about, int argc, const char* const* argv);
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
   ~Program();
 
+  /// The group of the options that are added from here on; at first it is `Group::input`.
+  void group(Group group) { group_ = group; }
   /// An option that has no default, or whose default the help describes. A name without dashes is a positional
   /// argument.
   /// @tparam T text, path, number, an optional number, or a vector of texts, paths or numbers
@@ -102,16 +124,18 @@ class Program {
   bool given(const char* name) const;
   /// What `--help` prints.
   std::string help() const;
+  /// What `--completion` prints: a function for bash that completes options and values.
+  std::string completion() const;
 
   const CommonOptions& common() const { return common_; }
-  const std::string& name() const { return name_; }
+  const char* name() const { return about_.name; }
   /// As it was typed, words with spaces and the like in quotes.
   std::string command_line() const;
 
   /// Adds the common options, reads the command line, and opens the outputs.
   /// @param default_out folder for figures where the user names none
   /// @param out_description,out_type what `--out` is in the help, for a program that writes something else there; an
-  ///        output where the type is FILE. Null: there is no such option
+  ///        output where the type is FILE, and required where there is no default. Null: there is no such option
   /// @throws an exception of the parser, which `run_program` turns into help or exit code 2
   /// @throws as `open_output`
   void parse(const std::string& default_out, const char* out_description = "folder for the figures",
@@ -137,8 +161,10 @@ class Program {
   template <class T>
   Option add(const char* name, T& value, const std::string& help, const char* type, bool default_shown);
 
+  About about_;
   std::unique_ptr<CLI::App> app_;
-  std::string name_;
+  Group group_ = Group::input;
+  OfferedValues offered_;
   CommonOptions common_;
   std::vector<std::pair<std::string, std::string*>> outputs_;  // options and their files
   std::map<std::string, std::string> opened_;                  // the option by where it leads
@@ -161,7 +187,6 @@ void require_folder(const std::filesystem::path& folder);
 
 /// Runs a program's body and reports a failure in one line on standard error.
 /// @return the body's value; 0 after help; 2 for wrong usage; 1 for any other failure
-int run_program(const char* name, const char* description, int argc, const char* const* argv,
-                const std::function<int(Program&)>& body);
+int run_program(const About& about, int argc, const char* const* argv, const std::function<int(Program&)>& body);
 
 }  // namespace support

@@ -14,65 +14,63 @@ namespace {
 
 namespace vn = vernier;
 
-/// Deviation of linear moves over the targets, before and after.
+/// Deviation of linear moves over the length of the path, before and after.
 bool draw_deviation(const std::filesystem::path& path, const CorrectionReport& report) {
-  Series before{"ends corrected alone", {}, {}}, after{"with inserted points", {}, {}};
-  double position = 0;
+  Series before{"ends corrected alone", {}, {}, Style::dashed, 0},
+      after{"with inserted points", {}, {}, Style::lines, 5};
+  double length = 0;  // of the path so far [mm]
   std::size_t first = 0;
+  const vn::Vector3* last = nullptr;
+  bool any = false;
   for (std::size_t i = 0; i < report.rows.size(); ++i) {
     if (report.rows[i].kind != "target") continue;
-    const auto pieces = static_cast<double>(i - first + 1);
+    const bool line = report.rows[i].ends_only > 0;  // joint moves have none
+    const double begin = length;
     for (std::size_t k = first; k <= i; ++k) {
-      position = static_cast<double>(report.rows[i].target - 1) + static_cast<double>(k - first + 1) / pieces;
-      after.x.push_back(position);
-      after.y.push_back(report.rows[k].deviation * 1e3);
+      const CommandRow& row = report.rows[k];
+      if (row.point.allFinite()) {
+        if (last != nullptr) length += 1e3 * vn::Vector3(row.point - *last).norm();
+        last = &row.point;
+      }
+      after.x.push_back(length);
+      after.y.push_back(line && row.deviation > 0 ? row.deviation * 1e3 : std::nan(""));
     }
-    for (const double x : {position - 1, position}) {  // of the whole move
+    for (const double x : {begin, length}) {  // of the whole move
       before.x.push_back(x);
-      before.y.push_back(report.rows[i].ends_only * 1e3);
+      before.y.push_back(line ? report.rows[i].ends_only * 1e3 : std::nan(""));
     }
+    any = any || line;
     first = i + 1;
   }
-  bool any = false;
-  for (Series* series : {&before, &after})
-    for (double& y : series->y) {
-      if (!(y > 0)) y = std::nan("");  // joint moves have no line
-      any = any || std::isfinite(y);
-    }
   if (!any) return false;
-  return plot_svg(path, "Deviation of the tool from its lines, as the model predicts", "target", "deviation [mm]",
-                  {before, after}, {.log_y = true});
+  return plot_svg(path, "Deviation of the tool from its lines, as predicted", "length of the path [mm]",
+                  "deviation [mm]", {before, after}, {.log_y = true});
 }
 
 /// The links of each branch of the first target, seen from the side: along the horizontal line from the base to the
 /// tool, at equal scales.
 bool draw_branches(const std::filesystem::path& path, const CorrectionReport& report) {
-  std::vector<Series> arms;
-  double low = 0, high = 0, left = 0, right = 0;
+  std::vector<Panel> arms;
   for (const CommandRow& row : report.rows) {
     if (row.target != report.rows.front().target || row.links.empty()) continue;
     const vn::Vector3 reach = row.links.back() - row.links.front();
     const double length = std::hypot(reach.x(), reach.y());
-    Series arm{row.kind + (row.status == "converged" ? "" : ", beyond the limits"), {}, {}};
+    Series arm{"links", {}, {}, Style::lines, 5}, tool{"tool", {}, {}, Style::points, 4};
     for (const vn::Vector3& point : row.links) {
       const vn::Vector3 from = point - row.links.front();
       arm.x.push_back(length > 0 ? (from.x() * reach.x() + from.y() * reach.y()) / length : from.x());
       arm.y.push_back(from.z());
-      left = std::min(left, arm.x.back());
-      right = std::max(right, arm.x.back());
-      low = std::min(low, arm.y.back());
-      high = std::max(high, arm.y.back());
     }
-    arms.push_back(arm);
+    tool.x.push_back(arm.x.back());
+    tool.y.push_back(arm.y.back());
+    const bool within = row.status == "converged";
+    if (!within) arm.style = Style::dashed;
+    arm.name = within ? "links" : "links, beyond the limits";
+    arms.push_back({row.kind, {arm, tool}});
   }
   if (arms.empty()) return false;
-  FigureOptions options;
-  const double scale = 1.1 * std::max((right - left) / (options.width - 250), (high - low) / (options.height - 120));
-  const double half_x = 0.5 * scale * (options.width - 250), half_y = 0.5 * scale * (options.height - 120);
-  options.x_range = {0.5 * (left + right) - half_x, 0.5 * (left + right) + half_x};
-  options.y_range = {0.5 * (low + high) - half_y, 0.5 * (low + high) + half_y};
-  return plot_svg(path, "All branches of the first target, seen from the side", "towards the tool [m]", "height [m]",
-                  arms, options);
+  return panels_svg(path, "All branches of the first target, seen from the side", "towards the tool [m]", "height [m]",
+                    arms, {.equal_axes = true});
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ struct CommandRow {
   vernier::SingularityDistances singularities;
   std::vector<vernier::Vector3> links{};  ///< origins of the joints and the tool [m]; of branches
   double radius = std::nan("");           ///< of 95 % [m]
+  vernier::Vector3 point = vernier::Vector3::Constant(std::nan(""));  ///< where the model sees the tool [m]
 };
 
 /// All commands of one run.
@@ -70,7 +71,8 @@ void print_correction(const CorrectionReport& report, const CorrectionTotals& to
 /// @param file that has the rows
 std::string correction_failure(const CorrectionReport& report, const CorrectionTotals& totals, const std::string& file);
 
-/// Draws the deviation of the tool along linear moves, before and after; the links of all branches of the first target.
+/// Draws the deviation of the tool over the length of the path, before and after; the links of all branches of the
+/// first target.
 /// @return whether there was something to draw, and something to draw it with
 bool draw_correction(const std::filesystem::path& path, const CorrectionReport& report);
 

@@ -33,13 +33,14 @@ struct FigureOptions {
   bool log_y = false;
   std::optional<std::pair<double, double>> x_range{};
   std::optional<std::pair<double, double>> y_range{};
-  int width = 900;          ///< [px]
-  int height = 540;         ///< [px]
+  int width = 760;          ///< [px]; half of it can still be read
+  int height = 500;         ///< [px]
   bool equal_axes = false;  ///< one unit is as long on both axes
 };
 
 /// The palette has this many colours: those of Okabe and Ito, distinguishable by colour-blind readers too. 0 is black.
-/// Lines beyond them have the same colours and other dashes.
+/// Each colour has a dash and a shape of points of its own, so figures can be read in grey. Series beyond them have the
+/// colours again, with other dashes.
 inline constexpr int palette_size = 7;
 
 /// Draws series over x. Labels name the unit: "position error [mm]".
@@ -47,6 +48,19 @@ inline constexpr int palette_size = 7;
 /// @throws std::runtime_error when the file cannot be written
 bool plot_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
               const std::string& y_label, const std::vector<Series>& series, const FigureOptions& options = {});
+
+/// One of several small plots beside each other.
+struct Panel {
+  std::string title;
+  std::vector<Series> series;
+  std::string y_label{};  ///< where its unit is another one than that of the others, which then have axes of their own
+};
+
+/// Draws small plots with the same axes beside each other, at most three in a row; series of one name have one entry
+/// in a legend below.
+/// @throws as `plot_svg`
+bool panels_svg(const std::filesystem::path& path, const std::string& title, const std::string& x_label,
+                const std::string& y_label, const std::vector<Panel>& panels, const FigureOptions& options = {});
 
 /// A value and what surrounds it.
 struct Interval {

@@ -40,7 +40,7 @@ std::string gaps_of(const PlanOutcome& found, int joint) {
   close();
   if (gaps == 0) return {};
   out += found.types[static_cast<std::size_t>(joint)] == vernier::JointType::revolute ? " deg" : " mm";
-  return gaps > most ? fmt::format("{} and {} more ranges", out, gaps - most) : out;
+  return gaps > most ? fmt::format("{} and {} more range{}", out, gaps - most, gaps - most == 1 ? "" : "s") : out;
 }
 
 std::string draw_plan(const std::filesystem::path& out, const PlanOutcome& found) {

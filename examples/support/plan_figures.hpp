@@ -21,6 +21,7 @@ struct PlanOutcome {
   std::vector<vernier::JointType> types{};   ///< of the joints
   vernier::Index measured = 0;               ///< number of poses measured before
   double left_out_error = 0;                 ///< of the model of those, rms of poses left out [m]; 0: unknown
+  bool oriented = false;                     ///< whether orientations are measured
 
   /// Expected rms position error after 0, 1, .. of the chosen poses [m]: what left-out poses show now, reduced as the
   /// plan predicts. Empty where it is unknown now.

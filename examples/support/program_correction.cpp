@@ -156,7 +156,8 @@ void add_program_options(Program& program, ProgramCorrection& to) {
       .one_value_each();
   program
       .add_option("--workobject", to.workobjects,
-                  "likewise the frame in which the poses are, in the robot's base frame", "[NAME=]X,Y,Z,RX,RY,RZ")
+                  "frame in which a program's poses are, in the robot's base frame; written as that of --tool",
+                  "[NAME=]X,Y,Z,RX,RY,RZ")
       .one_value_each();
   program.add_option("--robot-base", to.robot_base,
                      "the controller's base frame in that of the model's chain, where they differ (KUKA, Fanuc)",
@@ -174,6 +175,7 @@ void add_program_options(Program& program, ProgramCorrection& to) {
                   "given several times",
                   "NAME")
       .one_value_each();
+  program.group(Group::output);
   program.add_option("--date", to.date, "date written into the corrected program; by default today's", "DATE");
   program.add_flag("--allow-uncorrected", to.allow_uncorrected,
                    "write the program although some of its targets cannot be corrected and stay as they are");

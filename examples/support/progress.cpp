@@ -5,6 +5,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "console.hpp"
 
 namespace support {
 
@@ -17,10 +20,12 @@ std::string duration(double seconds) {
   return fmt::format("{}:{:02} h", whole / 3600, whole / 60 % 60);
 }
 
+bool is_shown() { return isatty(STDERR_FILENO) == 1 && !is_quiet(); }
+
 }  // namespace
 
 ProgressBar::ProgressBar(std::string label, vernier::Index total)
-    : ProgressBar(std::move(label), total, stderr, isatty(STDERR_FILENO) == 1) {}
+    : ProgressBar(std::move(label), total, stderr, is_shown()) {}
 
 ProgressBar::ProgressBar(std::string label, vernier::Index total, std::FILE* stream, bool shown)
     : label_(std::move(label)), total_(total), stream_(stream), shown_(shown) {
@@ -57,6 +62,40 @@ void ProgressBar::finish() {
   if (drawn_) std::fputs("\r\x1b[K", stream_);
   if (drawn_) std::fflush(stream_);
   drawn_ = shown_ = false;
+}
+
+Working::Working(std::string label) : Working(std::move(label), stderr, is_shown(), std::chrono::seconds(2)) {}
+
+Working::Working(std::string label, std::FILE* stream, bool shown, std::chrono::milliseconds from)
+    : label_(std::move(label)), stream_(stream), from_(from) {
+  if (shown) thread_ = std::thread([this] { run(); });
+}
+
+void Working::run() {
+  const auto start = std::chrono::steady_clock::now();
+  std::unique_lock lock(mutex_);
+  auto next = start + from_;
+  bool drawn = false;
+  while (!ended_.wait_until(lock, next, [&] { return end_; })) {
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    fmt::print(stream_, "\r\x1b[K{}, {}", label_, duration(elapsed));
+    std::fflush(stream_);
+    drawn = true;
+    next += std::chrono::milliseconds(500);
+  }
+  if (!drawn) return;
+  std::fputs("\r\x1b[K", stream_);
+  std::fflush(stream_);
+}
+
+void Working::finish() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    end_ = true;
+  }
+  ended_.notify_one();
+  thread_.join();
 }
 
 }  // namespace support

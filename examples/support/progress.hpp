@@ -2,12 +2,15 @@
 #pragma once
 
 /// @file
-/// A progress bar for people: on standard error, and only where that is a terminal.
+/// Progress for people: on standard error, and only where that is a terminal and the program is not quiet.
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include "vernier/core/fit_options.hpp"
 
@@ -42,6 +45,32 @@ class ProgressBar {
   std::FILE* stream_;
   bool shown_, drawn_ = false;
   Clock::time_point start_ = Clock::now(), last_{};
+};
+
+/// A line that shows from two seconds on what is going on and since when, for work that does not report how far it is.
+/// Nothing else may be printed while it is there; it takes itself away at the end.
+class Working {
+ public:
+  explicit Working(std::string label);
+  /// The same on another stream, shown or not, and from another time on.
+  Working(std::string label, std::FILE* stream, bool shown, std::chrono::milliseconds from);
+  Working(const Working&) = delete;
+  Working& operator=(const Working&) = delete;
+  ~Working() { finish(); }
+
+  /// Takes the line away.
+  void finish();
+
+ private:
+  void run();
+
+  std::string label_;
+  std::FILE* stream_;
+  std::chrono::milliseconds from_;
+  std::mutex mutex_{};
+  std::condition_variable ended_{};
+  bool end_ = false;
+  std::thread thread_{};
 };
 
 }  // namespace support

@@ -20,11 +20,12 @@ namespace support {
 Option RobotOptions::add_to(Program& program) {
   std::string names;
   for (const auto& name : catalogue_names()) names += (names.empty() ? "" : ", ") + name;
-  const Option out =
+  Option out =
       program.add_option("--robot", robot,
                          "name in the catalogue (" + names +
                              "), or a file: JSON, URDF (.urdf), kinematics of Universal Robots' driver (.yaml)",
                          "NAME|FILE");
+  out.offers(catalogue_names());
   program.add_option("--base-link", base_link, "of a URDF file: where the arm begins; by default the root", "LINK")
       .needs(out);
   program

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whether pages hold together.
 
-usage: pages.py            links lead to files and headings; no run of 12 words stands on two pages
+usage: pages.py            links lead to files and headings; pictures are shown and small; no run of 12 words stands on two pages
        pages.py PROGRAMS   options on pages are those of the programs
 """
 import functools
@@ -65,6 +65,15 @@ def lost_pages():
             if p not in linked and p.parent.name != "algorithms"]
 
 
+def wrong_pictures():
+    """Pictures that no page shows, and those of the gallery that are too large."""
+    text = "".join(page.read_text() for page in pages())
+    found = sorted((ROOT / "docs" / "figures").rglob("*.svg"))
+    out = [f"{p.relative_to(ROOT)}: no page shows it" for p in found if p.name not in text]
+    return out + [f"{p.relative_to(ROOT)}: more than 60 kB" for p in found
+                  if p.parent.name == "gallery" and p.stat().st_size > 60_000]
+
+
 def repeated_runs():
     """Runs of words that stand on two pages: facts have one place. Developers' pages may define what others use."""
     where, out = {}, []
@@ -109,7 +118,7 @@ def unknown_options(programs):
 
 
 def main():
-    wrong = unknown_options(pathlib.Path(sys.argv[1])) if len(sys.argv) > 1 else wrong_links() + lost_pages() + repeated_runs()
+    wrong = unknown_options(pathlib.Path(sys.argv[1])) if len(sys.argv) > 1 else wrong_links() + lost_pages() + wrong_pictures() + repeated_runs()
     print("\n".join(wrong), end="\n" if wrong else "")
     sys.exit(bool(wrong))
 

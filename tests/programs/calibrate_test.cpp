@@ -165,9 +165,13 @@ TEST(Calibrate, SaysWhatItDidAndWhereItIs) {
   const Calibration& c = calibration();
   for (const char* words :
        {"120 poses to learn from, 30 held out: every row i with i % 5 = 0", "frames", "geometry", "geometry + PSO-ELM",
-        "joint-wise", "[mrad]", "\nVerdict\n- Position error of all 30 held-out poses: ", " mm mean (95 % interval ",
+        "joint-wise", "[mrad]", "Verdict\n- Position error of all 30 held-out poses: ", " mm mean (95 % interval ",
         "Details behind the verdict: --verbose", "Figures: figures", "model.json"})
     EXPECT_NE(c.command.output.find(words), std::string::npos) << words << " is not in\n" << c.command.output;
+  const std::string& output = c.command.output;
+  EXPECT_TRUE(output.starts_with("Verdict\n")) << output;
+  EXPECT_LE(std::count(output.begin(), output.begin() + static_cast<std::ptrdiff_t>(output.find("\n\n")), '\n'), 7);
+  EXPECT_EQ(output.find("theta2"), std::string::npos) << "parameters are for --parameters";
   const char* details[] = {"Converged: ", "\nDetails\n- ", "Measured joint ranges [deg, mm]: ", "Range of validity"};
   for (const char* words : details) EXPECT_EQ(c.command.output.find(words), std::string::npos) << c.command.output;
   if (std::system("gnuplot --version >/dev/null 2>&1") != 0) return;  // the figures need it, the rest does not
@@ -242,16 +246,35 @@ TEST(Calibrate, StartsFromAnEarlierCalibration) {
 
 TEST(Calibrate, SameBitsForAnyNumberOfThreads) {
   const Calibration& c = calibration();
-  const CommandResult again = run(c.folder, "calibrate",
-                                  "--robot abb_irb120 --data poses.csv --save model2.json --json report2.json --out f2 "
-                                  "--threads 3 --date 2024-05-01 --verbose");  // every fifth row is the default
+  const CommandResult again =
+      run(c.folder, "calibrate",
+          "--robot abb_irb120 --data poses.csv --save model2.json --json report2.json --out f2 "
+          "--threads 3 --date 2024-05-01 --verbose --parameters");  // every fifth row is the default
   ASSERT_EQ(again.exit_code, 0) << again.errors;
-  for (const char* words : {"\nVerdict\n- ", "Converged: ", "\nDetails\n- ", "Measured joint ranges [deg, mm]: ",
-                            "Range of validity [deg, mm]: ", "Gravity compliance: "})
+  for (const char* words :
+       {"Verdict\n- ", "Converged: ", "\ntheta2  ", "\ntool_x  ", "\nDetails\n- ",
+        "Measured joint ranges [deg, mm]: ", "Range of validity [deg, mm]: ", "Gravity compliance: "})
     EXPECT_NE(again.output.find(words), std::string::npos) << words << " is not in\n" << again.output;
   EXPECT_EQ(again.output.find("--verbose"), std::string::npos);
   EXPECT_EQ(read_file(c.folder / "report.json"), read_file(c.folder / "report2.json"));
   EXPECT_EQ(read_file(c.folder / "model.json"), read_file(c.folder / "model2.json"));
+}
+
+// Orientations that say nothing leave what positions say.
+TEST(Calibrate, SigmasWeightPositionsAndOrientations) {
+  const Calibration& c = calibration();
+  const auto parameters = [&](const std::string& options) {
+    const CommandResult done = run(c.folder, "calibrate",
+                                   "--robot abb_irb120 --data poses.csv --test-every 5 --out f3 --harmonics 0 --no-approach "
+                                   "--parameters --save sigma.json " + options);
+    EXPECT_EQ(done.exit_code, 0) << done.errors;
+    const std::size_t begin = done.output.find("\ntheta2  ");
+    return std::stod(done.output.substr(begin + 41, 9));  // the change [mrad]
+  };
+  const double positions = parameters("--positions-only"), heavy = parameters("--orientation-sigma 1000"),
+               both = parameters("");
+  EXPECT_NEAR(heavy, positions, 2e-3);
+  EXPECT_GT(std::abs(both - positions), 5e-3) << "else this test says nothing";
 }
 
 TEST(Calibrate, TestFileFixedParametersAndRobustLoss) {

@@ -177,7 +177,12 @@ TEST(Compare, RefusesWhatItDoesNotKnow) {
   refused("--methods pso:geometry", 2, "geometry stands alone");
   refused("--methods jointwise+none", 2, "none stands alone");
   refused("--methods elm --robot ur99", 2, "no robot is called 'ur99'");
-  refused("--methods elm --robot ur10", 2, "only the abb_irb120 has an operating region");
+  refused("--methods elm --robot ur10 --region operating", 2, "only the abb_irb120 has an operating region");
+  std::ofstream(folder / "free.json") << R"({"name": "free", "convention": "standard", "joints": [
+    {"a_mm": 300, "alpha_deg": 0, "d_mm": 100, "theta_deg": 0, "lower_deg": -90, "upper_deg": 90},
+    {"a_mm": 200, "alpha_deg": 90, "d_mm": 0, "theta_deg": 0}]})";
+  refused("--methods elm --robot free.json", 2,
+          "free.json: joint 2 has no lower_deg or no upper_deg; simulated poses need limits");
   refused("--methods elm --poses 0", 2, "simulated poses need a number");
   refused("--methods elm --evaluations 10", 2, "evaluations is 10");
   refused("plan.json", 2, "key 'seed' is unknown");
@@ -190,6 +195,16 @@ TEST(Compare, RefusesWhatItDoesNotKnow) {
   std::ofstream(folder / "twice.json") << R"({"problems": [{}], "methods": ["elm"], "methods": ["gp"]})";
   refused("twice.json", 1, "key 'methods' is given twice");
   refused("--methods elm --results none.jsonl", 1, "none.jsonl, line 1: no result of a comparison");
+}
+
+// An arm of which no region is known is simulated within its limits; columns of the table never touch.
+TEST(Compare, OtherArmsAreSimulatedWithinTheirLimits) {
+  const TemporaryFolder folder("compare");
+  const CommandResult result = run(folder, "--methods none,geometry --robot ur10 --poses 40 --seeds 1,2");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("ur10, 40 poses to learn from"), std::string::npos) << result.output;
+  EXPECT_EQ(result.output.find("]0"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("] "), std::string::npos) << result.output;
 }
 
 TEST(Compare, ListsItsMethods) {

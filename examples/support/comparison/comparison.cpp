@@ -214,13 +214,21 @@ void Plan::prepare() {
     with_arm(p.arm, [](const auto&) {});
     check(p.errors == "geometric" || p.errors == "full", p.name, ": errors are '", p.errors,
           "', must be geometric or full");
+    if (p.region.empty()) p.region = p.robot == "abb_irb120" ? "operating" : "full";
     check(p.region == "operating" || p.region == "full", p.name, ": the region is '", p.region,
           "', must be operating or full");
     check(p.split == "random" || p.split == "region" || p.split == "time", p.name, ": the split is '", p.split,
           "', must be random, region or time");
     check(p.noise_mm >= 0 && p.noise_mm <= 100, p.name, ": noise_mm is ", p.noise_mm, ", must lie in 0..100");
     check(p.measured() || p.region == "full" || p.robot == "abb_irb120", p.name,
-          ": only the abb_irb120 has an operating region; say \"region\": \"full\"");
+          ": only the abb_irb120 has an operating region; leave --region out");
+    for (std::size_t j = 0; j < p.arm.limits.size() && !p.measured(); ++j) {
+      const auto [lower, upper] = p.arm.limits[j];
+      const auto types = p.arm.controller.types(p.arm.joint_types());
+      const char* const unit = types[j] == vn::JointType::revolute ? "deg" : "mm";
+      check(p.region == "operating" || (std::isfinite(lower) && std::isfinite(upper)), p.robot, ": joint ", j + 1,
+            " has no lower_", unit, " or no upper_", unit, "; simulated poses need limits");
+    }
   }
   const double cells = static_cast<double>(problems.size() * methods.size()) * static_cast<double>(poses.size()) *
                        static_cast<double>(seeds.size());

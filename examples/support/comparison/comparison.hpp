@@ -25,8 +25,8 @@ struct Problem {
   std::string robot = "abb_irb120";  ///< of the catalogue, or a robot file
   // simulated
   std::string errors = "geometric";  ///< geometric; full: joint errors too
-  std::string region = "operating";  ///< operating (of the IRB 120); full: the joint limits
-  double noise_mm = 0;               ///< of the measured positions, per component
+  std::string region;   ///< operating (of the IRB 120, and its default); full: the joint limits; empty: the default
+  double noise_mm = 0;  ///< of the measured positions, per component
   // measured
   std::filesystem::path data{};  ///< measured poses; empty: simulated
   CsvOptions csv{};              ///< how that file is written

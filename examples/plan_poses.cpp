@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "camera_plan.hpp"
 #include "cli.hpp"
 #include "csv_options.hpp"
 #include "dispatch.hpp"
@@ -31,6 +32,8 @@ struct Settings {
   support::RobotOptions robot;
   support::CsvOptions csv;
   support::SensorOptions sensor;
+  support::CameraPlan camera;
+  vn::BoardPlaces places;  // that were proposed
   std::string data, model, region, from, held_out, out;
   vn::Index count = 0, add = 0, choose = 0, test_every = 0, candidates = 5000;
   std::vector<double> tracker{}, box{}, region_box{};
@@ -41,6 +44,33 @@ struct Settings {
 
 vn::ToolBox tool_box(const std::vector<double>& mm) {
   return {1e-3 * vn::Vector3(mm[0], mm[2], mm[4]), 1e-3 * vn::Vector3(mm[1], mm[3], mm[5])};
+}
+
+/// Keeps the candidates at which the camera sees a board at one of some proposed places.
+/// @throws UsageError if there are too few
+template <int N>
+void require_in_view(Settings& o, const vn::Framed<vn::DhChain<N>>& arm, vn::MeasurementCandidates<N>& candidates) {
+  const vn::Framed<vn::DhChain<N>> flange_of(arm.model(), arm.base_frame(), vn::FrameParameters());
+  const std::vector<vn::Isometry3> flanges = vn::poses(flange_of, candidates.joints);
+  vn::BoardPlaces all = vn::propose_places(o.camera.view(), o.camera.mount == "flange", o.camera.in_flange(), flanges,
+                                           candidates.joints, o.camera.places, o.camera.table_mm * 1e-3);
+  std::vector<vn::Index> kept;
+  for (std::size_t i = 0; i < all.place.size(); ++i)
+    if (all.place[i] >= 0) kept.push_back(static_cast<vn::Index>(i));
+  const vn::Index wanted = std::max(o.count, o.add);
+  if (static_cast<vn::Index>(kept.size()) < wanted)
+    throw support::UsageError(fmt::format(
+        "{} of {} candidates see the board, {} are wanted; more --candidates or --places, another --carried, "
+        "or wider --distances-mm and --tilt-deg",
+        kept.size(), all.place.size(), wanted));
+  vn::JointRows<N> joints(static_cast<vn::Index>(kept.size()), N);
+  o.places = {all.in_base, {}};
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    joints.row(static_cast<vn::Index>(k)) = candidates.joints.row(kept[k]);
+    o.places.place.push_back(all.place[static_cast<std::size_t>(kept[k])]);
+  }
+  candidates.joints = joints;
+  candidates.previous.resize(0, N);
 }
 
 /// The rows to choose, in the order of the file; joints alone are looked at.
@@ -66,7 +96,7 @@ support::PlanOutcome choose_rows(const Settings& o, const vn::DescribedRobot<N>&
 
 /// New poses, written in the order of their visits.
 template <int N>
-support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& robot, vn::PlanOptions& options,
+support::PlanOutcome plan_new(Settings& o, const vn::DescribedRobot<N>& robot, vn::PlanOptions& options,
                               std::uint64_t seed) {
   const auto types = robot.arm.model().joint_types();
   vn::MeasurementConstraints constraints{.controller = robot.controller};
@@ -99,7 +129,8 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
     region = vn::sample_candidates(arm, robot.limits, inside, 200, seed + 1).joints;
   }
   if (region.rows() > 0) options.criterion = vn::DesignCriterion::region_variance;
-  const auto candidates = vn::sample_candidates(arm, robot.limits, constraints, o.candidates, seed);
+  auto candidates = vn::sample_candidates(arm, robot.limits, constraints, o.candidates, seed);
+  if (o.camera.given()) require_in_view(o, arm, candidates);
   const auto plan = vn::plan_measurements(arm, candidates, options, measured, region);
 
   std::string text;
@@ -107,11 +138,15 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
   const vn::MatrixX joints = robot.controller.to_controller(plan.joints);
   for (std::size_t j = 0; j < shown.size(); ++j)
     text += vn::message("q", j + 1, shown[j] == vn::JointType::revolute ? "_rad," : "_m,");
-  text += "visit\n";
+  text += o.camera.given() ? "board,visit\n" : "visit\n";
   std::vector<bool> seen(plan.chosen.size(), false);
   for (std::size_t i = 0; i < plan.visits.size(); ++i) {
     const auto row = static_cast<std::size_t>(plan.visits[i]);
     for (vn::Index j = 0; j < joints.cols(); ++j) text += vn::message(joints(plan.visits[i], j), ',');
+    if (o.camera.given())
+      text +=
+          support::place_name(static_cast<std::size_t>(o.places.place[static_cast<std::size_t>(plan.chosen[row])])) +
+          ',';
     text += seen[row] ? "check\n" : i < 3 ? "register\n" : "measure\n";
     seen[row] = true;
   }
@@ -128,9 +163,10 @@ support::PlanOutcome plan_new(const Settings& o, const vn::DescribedRobot<N>& ro
 }
 
 template <int N>
-support::PlanOutcome plan_arm(const Settings& o, const vn::RobotDescription& description, std::uint64_t seed) {
+support::PlanOutcome plan_arm(Settings& o, const vn::RobotDescription& description, std::uint64_t seed) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
-  vn::PlanOptions options{.count = std::max({o.count, o.add, o.choose}), .oriented = o.orientations};
+  vn::PlanOptions options{.count = std::max({o.count, o.add, o.choose}),
+                          .oriented = o.orientations || o.camera.given()};
   options.errors.drives = robot.drives;
   options.errors.down = robot.down;
   o.sensor.apply(options.sensors);
@@ -197,6 +233,7 @@ int run(support::Program& program) {
   o.csv.add_euler_to(program);
   o.sensor.add_to(program);
   program.group(support::Group::model);
+  o.camera.add_to(program);
   program.add_option("--tracker", o.tracker, "position of the tracker in the base frame of the arm [mm]", "X,Y,Z")
       .delimiter(',')
       .expected(3)
@@ -233,6 +270,7 @@ int run(support::Program& program) {
   program.parse("", "write the poses to this file", "FILE");
   o.sensor.note(program);
   o.out = program.common().out;
+  if (o.camera.given() && o.choose > 0) throw support::UsageError("--camera-mount plans new poses, without --choose");
   if (o.count + o.add + o.choose == 0) throw support::UsageError("one of --count, --add and --choose is required");
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   o.csv.controller = robot.controller;
@@ -275,8 +313,13 @@ int run(support::Program& program) {
   if (o.choose == 0)
     fmt::print("{} visits: the first three register the tracker, the first pose is visited {} times to see drift\n",
                plan.visits.size(), std::count(plan.visits.begin(), plan.visits.end(), plan.visits.front()));
+  if (o.camera.given()) fmt::print("{}", support::describe_places(o.places, o.camera.mount));
   fmt::print("Poses: {}\n", support::shown(o.out));
-  if (!program.common().json.empty()) support::write_json(program.common().json, to_json(o, robot.name, found));
+  if (!program.common().json.empty()) {
+    support::Json json = to_json(o, robot.name, found);
+    if (o.camera.given()) json["places"] = support::to_json(o.places);
+    support::write_json(program.common().json, json);
+  }
   if (!support::has_room_beside(o.out)) return 0;
   if (const std::string figures = support::draw_plan(o.out, found); !figures.empty())
     fmt::print("Figures: {}\n", figures);

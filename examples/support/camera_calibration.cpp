@@ -34,15 +34,6 @@ namespace {
 
 namespace vn = vernier;
 
-vn::Camera read_camera(const std::string& file) {
-  if (std::filesystem::path(file).extension() == ".json") return vn::read_camera_json(file);
-#ifdef VERNIER_HAS_URDF
-  return vn::read_camera_yaml(file);
-#else
-  throw UsageError(file + ": this build reads cameras as JSON alone; YAML needs yaml-cpp and tinyxml2");
-#endif
-}
-
 Json frames_json(const std::vector<std::string>& names, const std::vector<vn::Isometry3>& poses,
                  const std::vector<vn::Vector6>& stds) {
   Json out = Json::array();
@@ -270,6 +261,15 @@ vn::CameraReport calibrate_arm(const CalibrationOptions& o, const vn::RobotDescr
 }
 
 }  // namespace
+
+vernier::Camera read_camera(const std::string& file) {
+  if (std::filesystem::path(file).extension() == ".json") return vn::read_camera_json(file);
+#ifdef VERNIER_HAS_URDF
+  return vn::read_camera_yaml(file);
+#else
+  throw UsageError(file + ": this build reads cameras as JSON alone; YAML needs yaml-cpp and tinyxml2");
+#endif
+}
 
 int calibrate_by_camera(Program& program, const CalibrationOptions& o) {
   const vn::Board board = vn::read_board(o.board);

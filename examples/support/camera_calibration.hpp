@@ -4,10 +4,18 @@
 /// @file
 /// `calibrate --corners`: an arm, or base and tool alone, from images of a printed board.
 
+#include <string>
+
 #include "calibration_options.hpp"
 #include "cli.hpp"
+#include "vernier/camera/camera.hpp"
 
 namespace support {
+
+/// Intrinsics of a file: JSON, or YAML of OpenCV or ROS.
+/// @throws UsageError for YAML, if this build cannot read it
+/// @throws vernier::DataError on a malformed file
+vernier::Camera read_camera(const std::string& file);
 
 /// Reads corners, board and joints, or poses of the flange, prints what they determine and saves the model.
 /// @return exit code

@@ -8,6 +8,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/data/detail/pose_values.hpp"
+#include "vernier/io/json.hpp"
 
 namespace support {
 

@@ -8,10 +8,12 @@
 #include <set>
 #include <sstream>
 
+#include "projection.hpp"
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
+#include "vernier/io/camera_files.hpp"
 #include "vernier/kinematics/robots.hpp"
 #include "vernier/simulation/sampling.hpp"
 
@@ -42,6 +44,55 @@ class PlanPoses : public ::testing::Test {
 
   vernier_test::TemporaryFolder folder_{"plan_poses"};
 };
+
+// Every pose sees the whole board at its place, by a projection of its own.
+TEST_F(PlanPoses, ForACameraTheBoardIsInView) {
+  const Board board{.rows = 7, .columns = 9, .square = 0.03};
+  const Camera camera = vernier_test::machine_camera();
+  write_file(folder_ / "board.json", board_to_json(board).dump());
+  write_file(folder_ / "camera.json", camera_to_json(camera).dump());
+  const CommandResult done = plan(
+      "--count 30 --candidates 3000 --camera-mount flange --board board.json --intrinsics camera.json --carried "
+      "50,30,60,10,-5,20 --table-mm 100 --distances-mm 250,700 --tilt-deg 45 --seed 3 --json p.json --out poses.csv");
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  EXPECT_NE(done.output.find("place2: "), std::string::npos) << done.output;
+  const auto joints = read_joints<6>(folder_ / "poses.csv");
+  const CsvText text = read_csv_text(folder_ / "poses.csv");
+  const nlohmann::json places = json("p.json").at("places");
+  ASSERT_EQ(places.size(), 2u);
+  const double degree = std::numbers::pi / 180;
+  const Isometry3 carried =
+      rigid_motion(exp_so3(Vector3(10 * degree, -5 * degree, 20 * degree)), Vector3(0.05, 0.03, 0.06));
+  std::set<std::string> used;
+  for (Index i = 0; i < joints.rows(); ++i) {
+    const std::string& name = text.rows[static_cast<std::size_t>(i)][6];
+    used.insert(name);
+    const nlohmann::json& place = places.at(name == "place1" ? 0 : 1);
+    Vector3 at, turn;
+    for (Index k = 0; k < 3; ++k) {
+      at(k) = place.at("position_mm").at(static_cast<std::size_t>(k)).get<double>() * 1e-3;
+      turn(k) = place.at("rotation_vector_rad").at(static_cast<std::size_t>(k)).get<double>();
+    }
+    EXPECT_NEAR(at.z(), 0.1, 1e-9);
+    const Isometry3 flange = robots::abb_irb120().chain.pose(joints.row(i).transpose());
+    const Isometry3 seen = (flange * carried).inverse() * rigid_motion(exp_so3(turn), at);
+    const double distance = (seen * board.middle()).norm();
+    EXPECT_GE(distance, 0.25);
+    EXPECT_LE(distance, 0.7);
+    EXPECT_GE(seen(2, 2), std::cos(45 * degree));
+    for (Index k = 0; k < board.corners(); ++k) {
+      const Vector2 pixel = vernier_test::seen_at(camera, seen * board.corner(k));
+      EXPECT_TRUE(pixel(0) > 0 && pixel(0) < 1599 && pixel(1) > 0 && pixel(1) < 1199) << pixel.transpose();
+    }
+  }
+  EXPECT_EQ(used.size(), 2u);
+  EXPECT_EQ(plan("--count 5 --camera-mount flange --out poses.csv").exit_code, 2);
+  const CommandResult few = plan(
+      "--count 500 --candidates 600 --camera-mount flange --board board.json --intrinsics camera.json --carried "
+      "50,30,60,10,-5,20 --out no.csv");
+  EXPECT_EQ(few.exit_code, 2);
+  EXPECT_NE(few.errors.find("candidates see the board, 500 are wanted"), std::string::npos) << few.errors;
+}
 
 TEST_F(PlanPoses, NewPosesWithinTheirConstraints) {
   const std::string arguments =

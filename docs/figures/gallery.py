@@ -18,7 +18,7 @@ LARGEST = 60_000  # bytes of a picture
 
 COMMANDS = f"""
 describe_robot --robot abb_irb120 --joints 10,20,30,0,45,0 --out arm
-plan_poses --robot abb_irb120 --count 20 --candidates 80 --orientations --out plan.csv
+plan_poses --robot abb_irb120 --count 16 --candidates 70 --orientations --out plan.csv
 calibrate --robot abb_irb120 --data {DATA}/measured.csv --test-every 5 --save model.json --out calibrated
 correct --model model.json --targets {DATA}/targets.csv --out path.csv
 correct --model model.json --targets {DATA}/targets.csv --all-branches --out branches.csv

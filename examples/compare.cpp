@@ -322,16 +322,16 @@ std::vector<std::string> draw(const Grid& grid, const Plan& plan, const vn::Matr
       by_seconds.push_back({.name = method, .x = one->convergence.seconds, .y = one->convergence.best});
     }
     const std::string at = slug(name);
-    plot("learning_" + at + ".svg", name + ": error against the number of poses", "poses to learn from",
-         "mean error [mm], median over seeds", learning, {.log_x = true, .log_y = true});
+    plot("learning_" + at + ".svg", name + ": error by number of poses, median of seeds", "poses to learn from",
+         "mean error [mm]", learning, {.log_x = true, .log_y = true});
     plot("errors_" + at + ".svg", name + ": distribution of the error, " + poses_words(plan.poses.back()),
-         "position error [mm]", "share of the held-out poses [%]", distribution, {.log_x = true});
+         "position error [mm]", "share of poses [%]", distribution, {.log_x = true});
     for (const auto& [learner, curves] : convergence) {
       const std::string words = ", " + learner + ", " + poses_words(plan.poses.back());
       plot("convergence_" + at + "_" + slug(learner) + ".svg", name + ": convergence" + words, "evaluations",
-           "best fitness", curves[0], {.log_x = true, .log_y = true});
+           "best fitness [-]", curves[0], {.log_x = true, .log_y = true});
       plot("seconds_" + at + "_" + slug(learner) + ".svg", name + ": convergence in time" + words, "seconds",
-           "best fitness", curves[1], {.log_x = true, .log_y = true});
+           "best fitness [-]", curves[1], {.log_x = true, .log_y = true});
     }
   }
   if (plan.methods.size() > 1) {

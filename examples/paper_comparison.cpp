@@ -461,8 +461,8 @@ std::vector<std::string> draw_figures(const Run& run, const std::filesystem::pat
          errors_file);
     const auto distribution_file = folder / fmt::format("distribution_{}.svg", sets[set].name);
     keep(support::plot_svg(distribution_file, fmt::format("Distribution of the error, {}{}", sets[set].title, below),
-                           "position error [mm]", "share of the poses with this error or less [%]",
-                           support::cumulative(samples), {.log_x = true}),
+                           "position error [mm]", "share of the poses [%]", support::cumulative(samples),
+                           {.log_x = true}),
          distribution_file);
   }
   std::vector<support::Series> convergence;
@@ -471,7 +471,7 @@ std::vector<std::string> draw_figures(const Run& run, const std::filesystem::pat
         {methods[m].title, run.convergence[m].evaluations, run.convergence[m].best, support::Style::lines, colour(m)});
   const auto convergence_file = folder / "convergence.svg";
   keep(support::plot_svg(convergence_file, "Convergence of the searches", "evaluations of the fitness",
-                         "training error [mean square, scaled targets]", convergence, {.log_y = true}),
+                         "training error, scaled [-]", convergence, {.log_y = true}),
        convergence_file);
   return files;
 }

@@ -116,7 +116,8 @@ std::string with_value(const CLI::Option& option) {
 /// What an option does, its default, and which others it needs or excludes.
 std::string explained(const CLI::Option& option) {
   std::string out = (option.get_required() ? "REQUIRED: " : "") + option.get_description();
-  if (!option.get_default_str().empty()) out += fmt::format(" [{}]", option.get_default_str());
+  const std::string value = option.get_default_str();  // of several values in brackets already
+  if (!value.empty()) out += value.front() == '[' ? " " + value : fmt::format(" [{}]", value);
   const auto list = [&](const char* title, const std::set<CLI::Option*>& others) {
     std::vector<std::string> names;
     for (const CLI::Option* other : others) names.push_back(other->get_name());

@@ -274,7 +274,7 @@ bool panels_svg(const std::filesystem::path& path, const std::string& title, con
   const int entries = static_cast<int>(named.size()),
             across = std::clamp(page.width / (80 + 10 * static_cast<int>(longest)), 1, std::max(entries, 1)),
             legend_rows = (entries + across - 1) / across;
-  const int legend = 28 * legend_rows, head = 64, foot = 84;
+  const int legend = 34 * legend_rows, head = 64, foot = 84;
   const int left = 92, inside = own ? 210 : columns == 1 ? 360 : 250;
   page.height = head + foot + legend + rows * inside;
   // one place for the axes of each plot, in shares of the page

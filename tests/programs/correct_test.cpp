@@ -221,8 +221,9 @@ TEST_F(Correct, PosesAloneAndLinearMoves) {
   EXPECT_LT((actual_.position(commands.bottomRows(1).transpose()) - end).norm(), 1e-6);
   EXPECT_NE(lines("commands.csv").at(2).find(",2,inserted,"), std::string::npos);
 
-  if (std::system("gnuplot --version >/dev/null 2>&1") == 0)
+  if (std::system("gnuplot --version >/dev/null 2>&1") == 0) {
     EXPECT_NE(read_file(folder_ / "commands.svg").find("length of the path [mm]"), std::string::npos);
+  }
 
   const CommandResult all = correct("--targets line.csv --all-branches --out all.csv");
   EXPECT_EQ(all.exit_code, 0) << all.errors;

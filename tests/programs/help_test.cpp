@@ -132,7 +132,9 @@ TEST(Help, ExamplesAreCommandsThatTheProgramsTake) {
       EXPECT_TRUE(command.starts_with(name + " ")) << command;
       const CommandResult done = run(folder, "timeout 3 " + command);
       EXPECT_NE(done.exit_code, 2) << command << "\n" << done.errors;
-      if (done.exit_code != 0 && done.exit_code != 124) EXPECT_TRUE(done.one_line_of_errors()) << done.errors;
+      if (done.exit_code != 0 && done.exit_code != 124) {
+        EXPECT_TRUE(done.one_line_of_errors()) << done.errors;
+      }
     }
   }
 }

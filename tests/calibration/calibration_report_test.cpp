@@ -260,6 +260,8 @@ TEST(CalibrationReport, RangesInDegreesAndMillimetres) {
                    "Measured joint ranges [deg, mm]: q1 -57..29, 57..115; q2 0..50, 100..150, 200..250, 300..350."))
       << joined(report.details());
   EXPECT_TRUE(says(report.details(), "Range of validity [deg, mm]: q1 -63..34; q2."));
+  report.joints[0].formula = "-J2 - J3";  // a joint of the chain that is none of the controller's
+  EXPECT_TRUE(says(report.details(), "Range of validity [deg, mm]: -J2 - J3: -63..34; q2."));
 }
 
 // A block has a sentence for each answer, with sizes and errors in millimetres.

@@ -31,6 +31,8 @@ struct JointReport {
   std::vector<HarmonicEstimate> spectrum{};  ///< of the transmission; empty where it has none
   std::vector<HarmonicEstimate> lines{};     ///< its orders that exceed noise, the largest first
   JointDrive drive{};                        ///< gear and encoder, as far as they were stated
+  std::string
+      formula{};  ///< the joint in those of the controller, e.g. -J2 - J3; empty where it is one of them as it is
 };
 
 /// A weakly determined parameter, and poses that would determine it.

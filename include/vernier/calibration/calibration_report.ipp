@@ -186,7 +186,8 @@ VERNIER_LOCAL std::string describe_ranges(const char* title, const std::vector<J
   std::string out;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const double unit = joints[j].revolute ? 180 / std::numbers::pi : 1e3;
-    out += message(j > 0 ? "; " : "", 'q', j + 1);
+    out += j > 0 ? "; " : "";
+    out += joints[j].formula.empty() ? message('q', j + 1) : joints[j].formula + ':';
     const auto& ranges = joints[j].*member;
     for (std::size_t k = 0; k < ranges.size() && k < 4; ++k)
       out += message(k > 0 ? "," : "", ' ', std::llround(ranges[k].first * unit), "..",
@@ -338,8 +339,9 @@ VERNIER_LOCAL std::string describe_drift(const SessionDrift& drift, const std::v
     }
     const auto j = static_cast<std::size_t>(joint);
     const bool slides = j < joints.size() && !joints[j].revolute;
-    zeros =
-        message(" The zero of joint ", joint + 1, " moved most, by ", brief(largest * 1e6), slides ? " um." : " urad.");
+    const std::string formula = j < joints.size() && !joints[j].formula.empty() ? " (" + joints[j].formula + ")" : "";
+    zeros = message(" The zero of joint ", joint + 1, formula, " moved most, by ", brief(largest * 1e6),
+                    slides ? " um." : " urad.");
   }
   return message("During the session the base", station, " moved by up to ", brief(translation * 1e3), " mm and ",
                  brief(rotation * 1e6), " urad, fastest (", brief(fastest * 1e3), " mm) between ", time(at), " and ",
@@ -355,7 +357,8 @@ VERNIER_LOCAL std::string describe_lines(const JointReport& joint, std::size_t n
   int count = 0;
   for (const HarmonicEstimate& line : joint.lines) {
     if (line.order <= assembly || ++count > most) continue;
-    out += message(out.empty() ? message("Joint ", number, ": ") : "; ", std::llround(line.amplitude * 1e6),
+    const std::string formula = joint.formula.empty() ? "" : " (" + joint.formula + ")";
+    out += message(out.empty() ? message("Joint ", number, formula, ": ") : "; ", std::llround(line.amplitude * 1e6),
                    " urad (+-", std::llround(line.margin() * 1e6), ") at order ", line.order);
     if (const std::string cause = cause_of(line.order, joint.drive); !cause.empty()) out += ", " + cause;
   }

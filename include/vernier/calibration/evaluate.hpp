@@ -189,6 +189,9 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   for (Index i = 0; i < out.gates.size(); ++i)
     if (out.gates(i) >= 1) out.max_degradation = (std::max)(out.max_degradation, of_chosen(i) - geometry(i));
   const MatrixX chain_limits = controller.chain_limits(limits.lower, limits.upper);
+  const std::vector<std::string> formulas = controller.same()
+                                                ? std::vector<std::string>(N)
+                                                : controller.formulas(errors.model().nominal().model().joint_types());
   for (int j = 0; j < N; ++j) {
     JointReport joint;
     joint.revolute = errors.model().nominal().model().row(j).joint == JointType::revolute;
@@ -199,6 +202,7 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
       joint.measured_ranges.emplace_back(range.lower, range.upper);
     joint.valid_ranges = detail::within_limits(calibration.coverage.ranges[k], joint.measured_ranges,
                                                chain_limits(j, 0), chain_limits(j, 1));
+    if (formulas[k] != message('J', j + 1)) joint.formula = formulas[k];
     detail::describe_transmission(errors, j, joint);
     out.joints.push_back(std::move(joint));
   }

@@ -131,8 +131,8 @@ VERNIER_IMPL std::string coverage_section(const ReportInput& input) {
       return out_of;
     };
     if (!joint.measured_ranges.empty())
-      ranges.rows.push_back(
-          {message(j + 1), joint.revolute ? "deg" : "mm", text(joint.measured_ranges), text(joint.valid_ranges)});
+      ranges.rows.push_back({joint.formula.empty() ? message(j + 1) : joint.formula, joint.revolute ? "deg" : "mm",
+                             text(joint.measured_ranges), text(joint.valid_ranges)});
   }
   return section("where", "Where it is good", out + html_table(ranges));
 }

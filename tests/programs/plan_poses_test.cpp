@@ -52,7 +52,7 @@ TEST_F(PlanPoses, ForACameraTheBoardIsInView) {
   write_file(folder_ / "board.json", board_to_json(board).dump());
   write_file(folder_ / "camera.json", camera_to_json(camera).dump());
   const CommandResult done = plan(
-      "--count 30 --candidates 3000 --camera-mount flange --board board.json --intrinsics camera.json --carried "
+      "--count 25 --candidates 20000 --camera-mount flange --board board.json --intrinsics camera.json --carried "
       "50,30,60,10,-5,20 --table-mm 100 --distances-mm 250,700 --tilt-deg 45 --seed 3 --json p.json --out poses.csv");
   ASSERT_EQ(done.exit_code, 0) << done.errors;
   EXPECT_NE(done.output.find("place2: "), std::string::npos) << done.output;

@@ -57,7 +57,7 @@ struct BoardPlaces {
 };
 
 /// Proposes places of a board that stands still, or of a camera, one after another: each lets the joints be seen in the
-/// most new parts of their ranges, in bins of 10 degrees or 0.17 m.
+/// most new parts of their ranges, in bins of 10 degrees or 0.17 m. None is nearer than 0.2 m to the axis of the base.
 /// @param view      what is seen well
 /// @param on_flange whether the flange carries the camera; else it carries the board
 /// @param carried   flange_T_camera, or flange_T_board
@@ -87,6 +87,9 @@ inline BoardPlaces propose_places(const BoardView& view, bool on_flange, const I
       turn << c, s, 0, s, -c, 0, 0, 0, -1;
       place = rigid_motion(turn, Vector3(Vector3(middle.x(), middle.y(), table) - turn * view.board.middle()));
     }
+    constexpr double column = 0.2;  // the arm itself stands about the axis of its base [m]
+    const Vector3 at = on_flange ? transformed(place, view.board.middle()) : translation(place);
+    if (std::hypot(at.x(), at.y()) < column) continue;
     std::vector<std::size_t> who;
     for (std::size_t i = 0; i < ends.size(); ++i)
       if (sees(ends[i], place)) who.push_back(i);

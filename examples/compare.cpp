@@ -517,7 +517,7 @@ int body(Program& program) {
 int main(int argc, char** argv) {
   const support::About about{"compare",
                              "Compares learners and searches on equal terms: the same poses, budget and seeds for all.",
-                             {"compare --methods identification,geometry+elm,pso:elm --seeds 1,2,3 --out comparison",
+                             {"compare --methods geometry,geometry+elm,pso:elm --seeds 1,2,3 --out comparison",
                               "compare --data measured.csv --robot ur10 --methods jointwise,jointwise+pso:elm"},
                              "done; a run that was stopped goes on where it was"};
   return support::run_program(about, argc, argv, body);

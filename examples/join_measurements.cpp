@@ -257,6 +257,6 @@ int main(int argc, char** argv) {
        "join_measurements --joints poses.csv --key name --points points.csv --columns name,x,y,z --separator , --unit "
        "mm --out measured.csv"},
       "done",
-      "not done: rows and points that do not match are listed, or one line says why"};
+      "not done: rows and points do not match; one line says why"};
   return support::run_program(about, argc, argv, run);
 }

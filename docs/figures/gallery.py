@@ -23,7 +23,7 @@ calibrate --robot abb_irb120 --data {DATA}/measured.csv --test-every 5 --save mo
 correct --model model.json --targets {DATA}/targets.csv --out path.csv
 correct --model model.json --targets {DATA}/targets.csv --all-branches --out branches.csv
 iso9283 --data visits.csv --commanded poses.csv --out iso
-compare --methods none,identification,elm,pso:elm,geometry+elm --robot abb_irb120 --poses 50,100,200,400 --seeds 1,2,3,4,5 --evaluations 2000 --noise-mm 0.03 --out compared
+compare --methods none,geometry,elm,pso:elm,geometry+elm --robot abb_irb120 --poses 50,100,200,400 --seeds 1,2,3,4,5 --evaluations 2000 --noise-mm 0.03 --out compared
 paper_comparison --quick --test 30 --fresh 10 --out paper
 """
 

@@ -24,7 +24,7 @@ This page is written by `docs/reference/write_programs.py` from what each progra
 
 Each failure is one line on standard error. It names the program, and the file, the line or the value.
 
-What all programs have in common:
+All programs share a few rules:
 
 - Values in square brackets are defaults. Options with `...` take several values.
 - Progress is shown on standard error, if that is a terminal. `--quiet` hides it, and all that is printed for people.

@@ -69,7 +69,7 @@ std::string draw_plan(const std::filesystem::path& out, const PlanOutcome& found
   plot_svg(named("error"),
            known ? "Expected error: of poses left out now, reduced as predicted"
                  : "Predicted error, relative to that of all planned poses",
-           "number of poses", known ? "rms position error [mm]" : "relative error", {error}, {.log_y = true});
+           "number of poses", known ? "rms position error [mm]" : "relative error [-]", {error}, {.log_y = true});
   const auto view = [&](const char* name, const char* title, int up, const char* label) {
     for (auto [series, points, step] :
          {std::tuple(&possible, &found.reachable, stride), std::tuple(&chosen, &found.points, vernier::Index{1})}) {

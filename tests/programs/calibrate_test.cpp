@@ -264,9 +264,11 @@ TEST(Calibrate, SameBitsForAnyNumberOfThreads) {
 TEST(Calibrate, SigmasWeightPositionsAndOrientations) {
   const Calibration& c = calibration();
   const auto parameters = [&](const std::string& options) {
-    const CommandResult done = run(c.folder, "calibrate",
-                                   "--robot abb_irb120 --data poses.csv --test-every 5 --out f3 --harmonics 0 --no-approach "
-                                   "--parameters --save sigma.json " + options);
+    const CommandResult done =
+        run(c.folder, "calibrate",
+            "--robot abb_irb120 --data poses.csv --test-every 5 --out f3 --harmonics 0 --no-approach "
+            "--parameters --save sigma.json " +
+                options);
     EXPECT_EQ(done.exit_code, 0) << done.errors;
     const std::size_t begin = done.output.find("\ntheta2  ");
     return std::stod(done.output.substr(begin + 41, 9));  // the change [mrad]

@@ -105,12 +105,12 @@ TEST(Help, MarksWhatIsRequired) {
   const TemporaryFolder folder("required");
   for (const std::string& name : programs()) {
     const std::string help = run(folder, name + " --help").output;
-    const CommandResult without = run(folder, name);
     const std::size_t usage = help.find("usage: ");
     const bool requires_something =
         help.substr(usage, help.find("\n\n", usage) - usage).find(" --") != std::string::npos;
     EXPECT_EQ(requires_something, help.find("REQUIRED: ") != std::string::npos) << help;
     if (!requires_something) continue;
+    const CommandResult without = run(folder, name);
     EXPECT_EQ(without.exit_code, 2) << name;
     EXPECT_TRUE(without.one_line_of_errors()) << without.errors;
     const std::string missing = without.errors.substr(without.errors.find("--"),

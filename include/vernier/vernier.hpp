@@ -2,9 +2,10 @@
 #pragma once
 
 /// @file
-/// What calibration from measured poses needs: all of Vernier that depends on Eigen alone, except for six parts that
+/// What calibration from measured poses needs: all of Vernier that depends on Eigen alone, except for seven parts that
 /// few programs use, which would add a third to its compile time. Include those by name:
 /// - the general inverse kinematics: `kinematics/general_six_axis.hpp`
+/// - samples whose numbers of columns are known at run time: `regression/any_predictor.hpp`, `search/any_tuned.hpp`
 /// - tables of a tracker: `data/pair_points.hpp`
 /// - plans of measurements: `planning/plan_measurements.hpp`
 /// - ISO 9283: `evaluation/iso9283.hpp`, `iso9283_poses.hpp`, `iso9283_path.hpp`

@@ -9,6 +9,7 @@
 #include "vernier/io/identified_robot.hpp"
 #include "vernier/io/iso9283_json.hpp"
 #include "vernier/io/model_file.hpp"
+#include "vernier/io/model_text.hpp"
 #include "vernier/io/report_json.hpp"
 #include "vernier/io/robot_file.hpp"
 #include "vernier/io/search_state.hpp"

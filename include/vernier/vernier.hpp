@@ -9,6 +9,7 @@
 /// - calibrations that are checked or updated: `calibration/verify_calibration.hpp`,
 ///   `registration/recursive_calibration.hpp`
 /// - all branches of an arm: `kinematics/all_branches.hpp`, `arm_angle_form.hpp`, `general_six_axis.hpp`
+/// - samples whose numbers of columns are known at run time: `regression/any_predictor.hpp`, `search/any_tuned.hpp`
 /// - tables of a tracker: `data/pair_points.hpp`
 /// - plans of measurements: `planning/plan_measurements.hpp`
 /// - ISO 9283: `evaluation/iso9283.hpp`, `iso9283_poses.hpp`, `iso9283_path.hpp`

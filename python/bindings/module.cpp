@@ -55,5 +55,6 @@ PYBIND11_MODULE(_vernier, module) {
   python::bind_model(module);
   python::bind_calibration(module);
   python::bind_planning(module);
+  python::bind_learners(module);
   python::bind_minimize(module);
 }

@@ -9,15 +9,17 @@ Joint values are those of the controller, in radians or metres, a row a configur
     print(result.verdict)
     command = result.model.correct(q).command
 """
-from ._vernier import (Correction, IkResult, Measurements, Model, Progress, Robot, __version__, calibrate, load, minimize,
-                       plan, simulate)
+from ._vernier import (Correction, IkResult, Measurements, Model, Predictor, Progress, Robot, __version__, calibrate,
+                       load, minimize, plan, simulate)
 from .errors import CalibrationFailure, DataError
 from .functions import export_c, verify
+from .learners import Elm, GaElm, GaussianProcess, KernelElm, PsoElm, RidgeElm, VarProElm
 from .results import Branches, CalibrationResult, CorrectedPath, Plan, Report, SearchResult, Verification
 
 __all__ = ["Branches", "CalibrationFailure", "CalibrationResult", "CorrectedPath", "Correction", "DataError",
-           "IkResult", "Measurements", "Model", "Plan", "Progress", "Report", "Robot", "SearchResult", "Verification",
-           "__version__", "calibrate", "export_c", "load", "minimize", "plan", "simulate", "verify"]
+           "Elm", "GaElm", "GaussianProcess", "IkResult", "KernelElm", "Measurements", "Model", "Plan", "Predictor",
+           "Progress", "PsoElm", "Report", "RidgeElm", "Robot", "SearchResult", "VarProElm", "Verification", "__version__",
+           "calibrate", "export_c", "load", "minimize", "plan", "simulate", "verify"]
 
-for _type in (Correction, IkResult, Measurements, Model, Progress, Robot):
+for _type in (Correction, IkResult, Measurements, Model, Predictor, Progress, Robot):
     _type.__module__ = __name__  # where users find them, and where pickle looks

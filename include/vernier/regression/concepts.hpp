@@ -52,6 +52,8 @@ concept Regressor = std::copyable<R> && Predictor<PredictorOf<R, 6, 3>> && Predi
 
 namespace detail {
 
+struct RunTimeFit;  // fits recipes to matrices whose numbers of columns are known at run time
+
 /// A column vector of a predictor's inputs, known at compile time.
 template <class Derived, int Inputs>
 concept SampleOf = (Derived::ColsAtCompileTime == 1 && Derived::RowsAtCompileTime == Inputs);

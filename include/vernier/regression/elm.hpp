@@ -67,6 +67,8 @@ struct Elm {
   }
 
  private:
+  friend struct detail::RunTimeFit;
+
   VERNIER_API void validate() const;
   VERNIER_API detail::ElmFitness fitness(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                          const VectorX* weights) const;

@@ -94,6 +94,8 @@ struct GaussianProcess {
   }
 
  private:
+  friend struct detail::RunTimeFit;
+
   VERNIER_API void validate(Index dimension) const;
   VERNIER_API detail::FittedProcess solve(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                           const FitOptions& options) const;

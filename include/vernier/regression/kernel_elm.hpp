@@ -43,6 +43,8 @@ struct KernelElm {
   }
 
  private:
+  friend struct detail::RunTimeFit;
+
   struct Choice {
     double length_scale = 1, lambda = 1, error = std::numeric_limits<double>::infinity();
   };

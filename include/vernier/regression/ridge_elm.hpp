@@ -64,6 +64,8 @@ struct RidgeElm {
   }
 
  private:
+  friend struct detail::RunTimeFit;
+
   VERNIER_API detail::RidgeElmLeaveOneOutError leave_one_out_error(const ConstMatrixRef& inputs,
                                                                    const ConstMatrixRef& targets,
                                                                    const VectorX* weights) const;

@@ -74,6 +74,8 @@ struct VarProElm {
   }
 
  private:
+  friend struct detail::RunTimeFit;
+
   VERNIER_API void validate() const;
   VERNIER_API detail::VarProTrainingError training_error(const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                                                          const VectorX* weights) const;

@@ -44,8 +44,9 @@ VERNIER_IMPL std::vector<GeometricUnknown> geometric_unknowns(const ErrorModelIn
       out.push_back({k, -1, p.scale, precision});
       continue;
     }
-    for (GeometricUnknown& one :
-         frame_of_sets(input.sets, k < 6, options.tool_per_station, k < 6 ? locating : stations)) {
+    const bool of_base = k < 6;
+    const std::size_t last = of_base && stations > 1 ? locating : stations;  // objects have bases of another kind
+    for (GeometricUnknown& one : frame_of_sets(input.sets, of_base, options.tool_per_station, last)) {
       one.parameter = k;
       one.scale = p.scale;
       one.precision = precision;

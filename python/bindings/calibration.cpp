@@ -104,7 +104,7 @@ void bind_calibration(py::module_& module) {
   const vn::SensorModel sensors;
   module.def(
       "calibrate", &calibrate, py::arg("robot"), py::arg("data"), py::kw_only(), py::arg("test") = 5,
-      py::arg("seed") = 0, py::arg("threads") = py::none(), py::arg("accept") = py::none(), py::arg("date") = "",
+      py::arg("seed") = 1, py::arg("threads") = py::none(), py::arg("accept") = py::none(), py::arg("date") = "",
       py::arg("prior") = py::none(), py::arg("loss") = "huber", py::arg("position_sigma") = sensors.position_sigma,
       py::arg("orientation_sigma") = sensors.orientation_sigma, py::arg("distance_sigma") = sensors.distance_sigma,
       py::arg("contact_sigma") = sensors.contact_sigma, py::arg("joint_sigma") = sensors.joint_sigma,

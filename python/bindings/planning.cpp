@@ -72,11 +72,11 @@ void bind_planning(py::module_& module) {
       "plan", &plan, py::arg("robot"), py::arg("count") = 100, py::kw_only(), py::arg("candidates") = 2000,
       py::arg("poses") = none, py::arg("box") = none, py::arg("tracker") = none,
       py::arg("acceptance") = std::numbers::pi, py::arg("link_radius") = 0.0, py::arg("oriented") = false,
-      py::arg("measured") = none, py::arg("seed") = 0, py::arg("progress") = none,
+      py::arg("measured") = none, py::arg("seed") = 1, py::arg("progress") = none,
       "Chooses poses whose measurements tell most about the arm, of random candidates within limits or of given "
       "poses. box has two corners [m] between which the tool stays; tracker is a position [m] that must see it.");
   const support::SimulationSettings sizes;
-  module.def("simulate", &simulate, py::arg("robot"), py::arg("joints"), py::kw_only(), py::arg("seed") = 0,
+  module.def("simulate", &simulate, py::arg("robot"), py::arg("joints"), py::kw_only(), py::arg("seed") = 1,
              py::arg("position_noise") = sizes.position_noise, py::arg("orientation_noise") = sizes.orientation_noise,
              py::arg("backlash") = sizes.backlash, py::arg("gears") = sizes.gears, py::arg("orientations") = true,
              "Measures a virtual arm whose links, gears, compliance and backlash err, drawn from the seed: the same "

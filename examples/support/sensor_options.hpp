@@ -13,8 +13,9 @@ namespace support {
 
 /// The accuracy of a sensor, as a command line states it.
 struct SensorOptions {
-  double position_mm = 1e3 * vernier::SensorModel{}.position_sigma;          ///< of a position, per component [mm]
-  double orientation_mrad = 1e3 * vernier::SensorModel{}.orientation_sigma;  ///< of an orientation, likewise [mrad]
+  // divided, so that multiplied by 1e-3 it is that number again, to the last bit
+  double position_mm = vernier::SensorModel{}.position_sigma / 1e-3;          ///< of a position, per component [mm]
+  double orientation_mrad = vernier::SensorModel{}.orientation_sigma / 1e-3;  ///< of an orientation, likewise [mrad]
   std::string stated{};  ///< the options that were given, for messages; empty: none
 
   /// Adds --position-sigma and --orientation-sigma to a command line.

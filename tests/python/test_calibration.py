@@ -21,16 +21,15 @@ def test_it_is_the_calibration_of_the_program(programs, source, result, tmp_path
              "--save", tmp_path / "model.json", "--json", tmp_path / "results.json", "--out", tmp_path, "--date",
              "2026-01-01")
     saved = vernier.load(tmp_path / "model.json")
-    # the program reads the same file by its own way; the last bits of sums differ
-    assert np.abs(saved.fk(joints) - model.fk(joints)).max() < 1e-12
-    assert np.abs(saved.correct(joints).command - model.correct(joints).command).max() < 1e-9
+    assert np.array_equal(saved.fk(joints), model.fk(joints))
+    assert np.array_equal(saved.correct(joints).command, model.correct(joints).command)
     import json
     theirs = json.loads((tmp_path / "results.json").read_text())
     assert theirs["chosen"] == result.chosen
     assert list(theirs["stages"]) == list(result.stages)
     for key, errors in result.stages.items():
-        assert errors.mean() * 1e3 == pytest.approx(theirs["stages"][key]["mean_mm"], rel=1e-9)
-        assert errors.max() * 1e3 == pytest.approx(theirs["stages"][key]["max_mm"], rel=1e-9)
+        assert errors.mean() * 1e3 == pytest.approx(theirs["stages"][key]["mean_mm"], rel=1e-12)
+        assert errors.max() * 1e3 == pytest.approx(theirs["stages"][key]["max_mm"], rel=1e-12)
 
 
 def test_results(result, tmp_path):

@@ -155,8 +155,9 @@ TEST(Contacts, AJointThatSlidesIsALength) {
 }
 
 TEST(Contacts, StandardDeviationsAreThoseOfTheErrors) {
-  // normalised errors of the scale-free products, over several drawings of noise
-  double sum = 0, count = 0;
+  // normalised errors of the scale-free products, over several drawings of noise: those of independent touches are of
+  // unit size, where touches share no error; the stated ones allow for errors that touches share, so they are larger
+  double sum = 0, count = 0, with_shared = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const std::vector contacts{touched(vernier_test::table, "table", lengths(40, 20, 0.1), 0.03e-3, 3 * seed + 10),
                                touched(vernier_test::front, "front", lengths(40), 0.03e-3, 3 * seed + 11),
@@ -167,13 +168,18 @@ TEST(Contacts, StandardDeviationsAreThoseOfTheErrors) {
         if (p.name == name) {
           const auto actual = ArmGeometry(actual_arm()).parameters();
           const Index k = &p - found.parameters.data();
-          sum += std::pow((p.identified - actual(k)) / p.std, 2);
+          const auto free = std::find(found.free.begin(), found.free.end(), k) - found.free.begin();
+          const double error = p.identified - actual(k), independent = found.independent_covariance(free, free);
+          EXPECT_GT(p.std * p.std, 0.9 * independent);  // what shared errors explain is no noise
+          sum += error * error / independent;
+          with_shared += std::pow(error / p.std, 2);
           ++count;
         }
   }
   EXPECT_EQ(count, 48);
   EXPECT_GT(sum / count, 0.5);
   EXPECT_LT(sum / count, 1.8);
+  EXPECT_GT(with_shared / count, 0.25);  // standard deviations of at most twice the errors
 }
 
 /// Covariance of estimates, symmetric, and their deviations the roots of its diagonal.

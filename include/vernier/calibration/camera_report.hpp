@@ -33,9 +33,11 @@ struct ImageError {
 
 /// What is left of a corner.
 struct CornerResidual {
-  Index image = 0;                        ///< number of the view in `CameraReport::images`
-  double u = 0, v = 0;                    ///< where it was found [px]
-  double residual_u = 0, residual_v = 0;  ///< modelled minus found [px]
+  Index image = 0;        ///< number of the view in `CameraReport::images`
+  double u = 0;           ///< column where it was found [px]
+  double v = 0;           ///< row where it was found [px]
+  double residual_u = 0;  ///< modelled minus found, across [px]
+  double residual_v = 0;  ///< likewise, down [px]
 };
 
 /// What one view alone says of the arm, with the intrinsics that were found.

@@ -14,6 +14,7 @@
 #include "csv_options.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
+#include "model_instances.hpp"
 #include "plan_figures.hpp"
 #include "progress.hpp"
 #include "robot_choice.hpp"

@@ -9,7 +9,7 @@
 
 #include "calibrated_arm.hpp"
 #include "controller_rows.hpp"
-#include "instance_list.hpp"
+#include "instances.hpp"
 #include "with_branches.hpp"
 
 namespace support {
@@ -179,7 +179,3 @@ std::shared_ptr<const CalibratedArm> calibrated_arm_of<VERNIER_JOINTS>(const ver
 }
 
 }  // namespace support
-
-namespace vernier {
-VERNIER_VERIFICATION_INSTANCES(template, VERNIER_JOINTS)
-}  // namespace vernier

@@ -19,11 +19,11 @@ namespace support {
 
 /// What to calibrate, from what.
 struct CalibrationTask {
-  vernier::RobotDescription robot;             ///< the arm as designed
-  MeasuredData train{};                        ///< to learn from
-  std::optional<MeasuredData> test{};          ///< held-out poses, as many stations; none: rows of `train`
-  vernier::Index test_every = 5;               ///< every so many rows are held out then
-  double test_fraction = 0;                    ///< in place of that, so many at random; 0: not
+  vernier::RobotDescription robot;     ///< the arm as designed
+  MeasuredData train{};                ///< to learn from
+  std::optional<MeasuredData> test{};  ///< held-out poses, as many stations; none: rows of `train`
+  vernier::Index test_every = 5;       ///< K: every K-th row is held out, if `test` is none
+  double test_fraction = 0;  ///< above 0: this share of the rows is held out at random, in place of every K-th
   vernier::CalibrateOptions calibrate{};       ///< of the calibration itself
   const vernier::SavedModel* prior = nullptr;  ///< an earlier calibration to start from; null: none
   std::string date{};                          ///< written into the model

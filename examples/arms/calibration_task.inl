@@ -5,7 +5,7 @@
 
 #include "calibration_task.hpp"
 #include "held_out.hpp"
-#include "instance_list.hpp"
+#include "instances.hpp"
 #include "known_parts.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/calibration/data_audit.hpp"
@@ -147,7 +147,3 @@ CalibrationOutcome calibrate_of<N>(const CalibrationTask& task, const vn::FitOpt
 }
 
 }  // namespace support
-
-namespace vernier {
-VERNIER_CALIBRATION_INSTANCES(template, VERNIER_JOINTS)
-}  // namespace vernier

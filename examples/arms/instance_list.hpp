@@ -2,20 +2,21 @@
 #pragma once
 
 /// @file
-/// The functions that take longest to compile, as a list: `instances.hpp` declares their instances, the files of
-/// `vernier_arms` define them.
+/// The functions that take longest to compile, as a list: `instances.hpp` declares their instances, the library
+/// `vernier_instances` defines them.
 
+#include "model_instances.hpp"
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/evaluate.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
 
 /// The functions, as instances that are declared (`extern template`) or defined (`template`).
-#define VERNIER_CALIBRATION_INSTANCES(keyword, N)                                                                  \
-  keyword Calibration<DhChain<N>> calibrate<Framed<DhChain<N>>>(const Framed<DhChain<N>>&, const Measurements<N>&, \
-                                                                const CalibrateOptions&);                          \
-  keyword CalibrationReport evaluate<DhChain<N>>(const Calibration<DhChain<N>>&, const Measurements<N>&,           \
-                                                 const JointLimits<N>&, const ControllerMap&);
-#define VERNIER_VERIFICATION_INSTANCES(keyword, N)                                                                    \
+#define VERNIER_INSTANCES(keyword, N)                                                                                 \
+  keyword Calibration<DhChain<N>> calibrate<Framed<DhChain<N>>>(const Framed<DhChain<N>>&, const Measurements<N>&,    \
+                                                                const CalibrateOptions&);                             \
+  keyword CalibrationReport evaluate<DhChain<N>>(const Calibration<DhChain<N>>&, const Measurements<N>&,              \
+                                                 const JointLimits<N>&, const ControllerMap&);                        \
   keyword VerificationReport verify_calibration<DhChain<N>>(const ErrorModel<DhChain<N>>&, const ErrorModelEstimate&, \
                                                             const Measurements<N>&, const VerifyOptions&,             \
-                                                            const PointRows&);
+                                                            const PointRows&);                                        \
+  VERNIER_MODEL_INSTANCES(keyword, N)

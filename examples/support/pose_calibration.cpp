@@ -133,12 +133,6 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
                       .held_out = measured->held_out,
                       .audits = std::move(audits)};
   out.error_of = [measured, o](const vn::RobotDescription& arm) { return held_out_error(arm, *measured, o); };
-  if (!out.report.drift.empty()) {  // reflectors of one place have one base, and one drift
-    std::vector<vn::SessionDrift> of_places;
-    for (std::size_t s = 0; s < measured->train.poses().size(); ++s)
-      if (vn::detail::first_of_place(measured->train.sets(), s) == s) of_places.push_back(out.report.drift[s]);
-    out.report.drift = std::move(of_places);
-  }
   const bool own_tools = measured->has_own_tools(options.errors.tool_per_station);
   out.sets = measured->names;
   if (own_tools) out.reflectors = reflectors_of(calibration, measured->train);

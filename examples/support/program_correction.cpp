@@ -12,6 +12,7 @@
 
 #include "file_name.hpp"
 #include "json_file.hpp"
+#include "model_instances.hpp"
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/core/version.hpp"

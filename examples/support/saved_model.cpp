@@ -10,6 +10,7 @@
 #include "dispatch.hpp"
 #include "file_name.hpp"
 #include "json_file.hpp"
+#include "model_instances.hpp"
 #include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/evaluation/position_errors.hpp"

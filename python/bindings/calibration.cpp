@@ -38,7 +38,8 @@ std::vector<vn::Learner> learners_of(const std::vector<std::string>& words) {
   return out;
 }
 
-/// How poses are held out: every so many rows, a share of them at random, or others.
+/// Which poses are held out. An integer K holds out every K-th row, a share that many rows at random. `Measurements`
+/// are the held-out poses themselves.
 void hold_out(const py::object& test, support::CalibrationTask& task) {
   if (py::isinstance<Measurements>(test)) {
     task.test = test.cast<const Measurements&>().data;
@@ -46,7 +47,8 @@ void hold_out(const py::object& test, support::CalibrationTask& task) {
     task.test_every = test.cast<vn::Index>();
     vn::demand(task.test_every >= 2, "test: every ", task.test_every, "th row cannot be held out; at least 2");
   } else {
-    vn::demand(py::isinstance<py::float_>(test), "test: Measurements, every so many rows (int), or a share (float)");
+    vn::demand(py::isinstance<py::float_>(test),
+               "test must be Measurements, K for every K-th row (int), or a share of the rows (float)");
     task.test_fraction = test.cast<double>();
     vn::demand(task.test_fraction > 0 && task.test_fraction < 1, "test: a share of ", task.test_fraction,
                ", must be between 0 and 1");
@@ -111,9 +113,11 @@ void bind_calibration(py::module_& module) {
       py::arg("use_orientations") = true, py::arg("keep_outliers") = false, py::arg("refuse_implausible") = true,
       py::arg("learners") = std::vector<std::string>{"pso_elm", "ridge_elm", "kernel_elm"},
       py::arg("progress") = py::none(),
-      "Calibrates an arm from measurements and assesses it on held-out poses, as the program calibrate does. test says "
-      "which: every so many rows (int), a share of them at random (float), or other Measurements. progress is called "
-      "with a Progress ten times a second.");
+      "Calibrates an arm from measurements and assesses it on held-out poses, as the program calibrate does. test "
+      "names "
+      "the held-out poses: an int K holds out every K-th row, a float that share of the rows at random; Measurements "
+      "are "
+      "held-out poses themselves. progress is called with a Progress ten times a second.");
 }
 
 }  // namespace python

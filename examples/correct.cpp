@@ -18,6 +18,7 @@
 #include "csv_options.hpp"
 #include "dispatch.hpp"
 #include "json_file.hpp"
+#include "model_instances.hpp"
 #include "payload_option.hpp"
 #include "program_correction.hpp"
 #include "progress.hpp"
@@ -220,7 +221,9 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
   const vn::InControllerJoints<vn::CalibratedRobot<N>> arm = robot.in_controller_joints();
   support::CorrectionReport report{.robot = robot.name(),
                                    .joints = robot.controller().types(robot.nominal().chain().joint_types()),
-                                   .targets = static_cast<vn::Index>(targets.size())};
+                                   .targets = static_cast<vn::Index>(targets.size()),
+                                   .expected_error = robot.provenance().expected_error(),
+                                   .held_out = robot.provenance().held_out_error > 0};
   if (const vn::ThermalRates* thermal = robot.model().thermal()) {
     report.temperature = thermal->reference;
     report.clamped = settings.temperature && *settings.temperature != thermal->reference;

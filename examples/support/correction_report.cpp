@@ -142,8 +142,11 @@ nlohmann::json correction_json(const CorrectionReport& report, const CorrectionT
 }
 
 void print_correction(const CorrectionReport& report, const CorrectionTotals& totals) {
-  fmt::print("{}: {} of {} targets corrected; the model predicts errors of {:.2g} mm (mean), {:.2g} mm (largest)\n",
-             report.robot, totals.met, report.targets, totals.mean, totals.largest);
+  fmt::print("{}: {} of {} targets corrected; in the model the tool meets them within {:.2g} mm\n", report.robot,
+             totals.met, report.targets, totals.largest);
+  if (report.expected_error > 0)
+    fmt::print("The model itself errs by {:.3g} mm at poses it was not fitted to ({})\n", report.expected_error * 1e3,
+               report.held_out ? "mean of held-out poses" : "rms of poses left out in turn");
   if (report.linear)
     fmt::print(
         "Linear moves: the tool leaves their lines by {:.2g} mm at most, with {} points inserted; by {:.2g} mm "

@@ -39,6 +39,8 @@ struct CorrectionReport {
   std::vector<vernier::JointType> joints{};  ///< types of its joints
   std::vector<CommandRow> rows{};            ///< commands
   vernier::Index targets = 0;                ///< number of targets
+  double expected_error = 0;                 ///< of the model, at poses it was not fitted to [m]; 0: unknown
+  bool held_out = false;                     ///< whether that is the mean of held-out poses, not rms of left-out ones
   bool linear = false;                       ///< whether there are linear moves
   bool branches = false;                     ///< whether rows are all branches of each target
   double before = 0, after = 0;              ///< largest deviation from the lines [m]

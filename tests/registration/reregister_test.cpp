@@ -18,6 +18,7 @@
 #include "vernier/core/rigid_motions.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/registration/register_frames.hpp"
 #include "vernier/simulation/error_sources.hpp"
 #include "vernier/simulation/sampling.hpp"
 
@@ -99,6 +100,39 @@ TEST(Reregister, OneOrientationOfSevenDoesNotDecideWhereTheBaseStands) {
     const Vector3 turned = log_so3(rotation(found.motion.base));
     EXPECT_NEAR(turned.z(), 3.14 / 7, 0.03) << odd;
   }
+}
+
+// Frames of a model without parameters, from measurements in another place and with another tool. The prior that keeps
+// offsets small moves them by less than a micrometre.
+constexpr double by_prior = 1e-6;
+
+TEST(RegisterFrames, FindsBaseAndToolOfAnyModel) {
+  const FrameParameters base(elsewhere), tool(other_tool);
+  const Framed<Chain> truth(robot.chain, base, tool);
+  const auto measured = measure(truth, samples(8, 3));
+  const Framed<Chain> found = register_frames(robot.chain, measured);
+  EXPECT_LT(difference(found.base(), elsewhere), by_prior);
+  EXPECT_LT(difference(found.tool(), other_tool), by_prior);
+  const Framed<Chain> by_points = register_frames(robot.chain, measured.without_orientations());
+  EXPECT_LT((translation(by_points.tool()) - translation(other_tool)).norm(), by_prior);
+  EXPECT_LT((rotation(by_points.tool()) - Matrix3::Identity()).norm(), 1e-12);
+  EXPECT_TRUE(mentions(complaint([&] { register_frames(robot.chain, measure(truth, samples(5, 3))); }),
+                       "register_frames: 5 poses, needs six or more"));
+}
+
+// The flange of a SCARA turns about the vertical alone, so the height of the tool is one with that of the base.
+TEST(RegisterFrames, PredictWhereTheFlangeTurnsAboutOneDirection) {
+  const DhChain<2> planar({{.a = 0.3}, {.a = 0.2}});
+  const Framed<DhChain<2>> truth(planar, FrameParameters(elsewhere),
+                                 FrameParameters(rigid_motion(Matrix3::Identity(), Vector3(0.02, -0.01, 0.1))));
+  JointRows<2> joints(9, 2), others(9, 2);
+  for (Index i = 0; i < 9; ++i) {
+    const auto k = static_cast<double>(i);
+    set_configuration(joints, i, JointVector<2>(0.3 * k - 1, 1.5 - 0.41 * k));
+    set_configuration(others, i, JointVector<2>(1.1 - 0.2 * k, 0.37 * k - 1));
+  }
+  const auto found = register_frames(planar, measure(truth, joints).without_orientations());
+  EXPECT_LT((positions(found, others) - positions(truth, others)).cwiseAbs().maxCoeff(), by_prior);
 }
 
 TEST(Reregister, FindsATool) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "vernier/compensation/concepts.hpp"
+#include "vernier/core/detail/number_text.hpp"
 #include "vernier/core/rigid_motions.hpp"
 
 namespace vernier {
@@ -19,8 +20,8 @@ namespace detail {
 VERNIER_IMPL void require_same_frames(const char* caller, const PointRows& error) {
   double mean = 0;
   for (Index i = 0; i < error.rows(); ++i) mean += point(error, i).norm() / static_cast<double>(error.rows());
-  demand(mean < 0.05, caller, ": model and data are ", mean * 1e3,
-         " mm apart on average; register the frames first (identify with Frames::base_and_tool)");
+  demand(mean < 0.05, caller, ": model and data are ", brief(mean * 1e3),
+         " mm apart on average; register the frames first (register_frames)");
 }
 
 }  // namespace detail

@@ -85,12 +85,17 @@ TEST_F(Reflectors, AreNotNamesOfPoses) {
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].poses.size(), 3);
   EXPECT_NE(remarks_.find("the column point names poses"), std::string::npos) << remarks_;
+  // encoders show other last digits at the same pose
+  remarks_.clear();
+  EXPECT_EQ(read("point,q1_rad,x_mm,y_mm,z_mm\nP1,1,0,0,0\nP2,2,0,0,0\nP1,1.00003,0,0,0\n").size(), 1u);
+  EXPECT_NE(remarks_.find("the column point names poses"), std::string::npos) << remarks_;
 }
 
 TEST_F(Reflectors, WithMistakesAreRefused) {
   const std::string head = "point,q1_rad,x_mm,y_mm,z_mm\n";
   EXPECT_EQ(refused(head + "a,1,0,0,0\na,2,0,0,0\na,3,0,0,0\nb,1,0,0,0\n"),
-            "poses.csv, line 1: the reflector 'b' is measured at 1 configuration, it needs three or more");
+            "poses.csv, line 1: the reflector 'b' is measured at 1 configuration, it needs three or more; call the "
+            "column otherwise if it names no reflectors");
   EXPECT_NE(refused(head + "a,1,0,0,0\n,2,0,0,0\n").find("line 3, column point: no name"), std::string::npos);
   EXPECT_NE(refused("q1_rad,x1_mm,y1_mm,z1_mm,x2_mm,y2_mm,z2_mm\n1,1,2,3,4,,6\n").find("three empty cells"),
             std::string::npos);

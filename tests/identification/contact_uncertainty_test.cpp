@@ -26,7 +26,7 @@ using Actual = Framed<WithJointErrors<DhChain<6>>>;
 
 const FrameParameters probe(Vector6{0.04, -0.02, 0.1, 0, 0, 0});
 
-/// Six bars of two sockets 50 mm apart, each socket off by some error; 32 touches a socket.
+/// Touches of six bars. A bar has two sockets 50 mm apart, and each socket has an error of its own and 32 touches.
 std::vector<Contact> bars(const Actual& arm, double socket_sigma, std::uint64_t seed) {
   const JointLimits<6>& limits = abb_irb120_operating_region().limits;
   std::vector<Contact> out;

@@ -111,7 +111,7 @@ TEST(SearchState, PatienceAndObservers) {
   EXPECT_EQ(result.status, SearchStatus::stalled);
   EXPECT_EQ(result.generations, whole.generations);
   EXPECT_EQ(complaint([&] { minimize(pso, coarse, Box::cube(3, 0, 1), loaded); }),
-            "minimize: a search in 4 dimensions cannot be resumed in a box of 3");
+            "minimize: the best point of the search has 4 entries, the box 3");
 }
 
 // Numbers at the ends of what doubles and integers hold.

@@ -164,7 +164,7 @@ TEST(Minimize, RefusesBadBoxesWithTheNumbers) {
 TEST(Minimize, ResumesNoSearchInABoxThatIsNone) {
   auto search = start_search(pso, sphere, box, 1);
   EXPECT_EQ(complaint([&] { static_cast<void>(minimize(pso, sphere, Box::cube(2, -2, 2), search)); }),
-            "minimize: a search in 3 dimensions cannot be resumed in a box of 2");
+            "minimize: the best point of the search has 3 entries, the box 2");
   Box reversed = box;
   reversed.lower(1) = 3;
   EXPECT_EQ(complaint([&] { static_cast<void>(minimize(pso, sphere, reversed, search)); }).rfind("Box: dimension 1", 0),

@@ -31,8 +31,11 @@ struct JointReport {
   std::vector<HarmonicEstimate> spectrum{};  ///< of the transmission; empty where it has none
   std::vector<HarmonicEstimate> lines{};     ///< its orders that exceed noise, the largest first
   JointDrive drive{};                        ///< gear and encoder, as far as they were stated
-  std::string
-      formula{};  ///< the joint in those of the controller, e.g. -J2 - J3; empty where it is one of them as it is
+  /// The joint as a formula of the controller's joints, e.g. -J2 - J3; empty where it is one of them as it is.
+  std::string formula{};
+
+  /// That formula in brackets, to follow the joint's number; empty without one.
+  std::string bracketed_formula() const { return formula.empty() ? "" : " (" + formula + ")"; }
 };
 
 /// A weakly determined parameter, and poses that would determine it.
@@ -76,7 +79,7 @@ struct CalibrationReport {
   std::optional<FittedPayload> payload{};    ///< where the poses state what the arm carried, and that has an effect
   std::optional<EstimatedDown> down{};       ///< where the direction of gravity was estimated
   std::optional<PriorTransfer> prior{};      ///< how much of an earlier calibration holds, where there was one
-  std::vector<SessionDrift> drift{};         ///< of each station's base; empty where the data do not support it
+  std::vector<SessionDrift> drift{};         ///< of the base at each place; empty where the data do not support it
   double max_degradation = 0;     ///< largest excess of the chosen stage's error over that of geometry, inside the
                                   ///< range of validity [m]
   double ellipsoid_coverage = 0;  ///< share of held-out poses within their predicted 95 % ellipsoid

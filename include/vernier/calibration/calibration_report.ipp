@@ -339,7 +339,7 @@ VERNIER_LOCAL std::string describe_drift(const SessionDrift& drift, const std::v
     }
     const auto j = static_cast<std::size_t>(joint);
     const bool slides = j < joints.size() && !joints[j].revolute;
-    const std::string formula = j < joints.size() && !joints[j].formula.empty() ? " (" + joints[j].formula + ")" : "";
+    const std::string formula = j < joints.size() ? joints[j].bracketed_formula() : "";
     zeros = message(" The zero of joint ", joint + 1, formula, " moved most, by ", brief(largest * 1e6),
                     slides ? " um." : " urad.");
   }
@@ -357,9 +357,9 @@ VERNIER_LOCAL std::string describe_lines(const JointReport& joint, std::size_t n
   int count = 0;
   for (const HarmonicEstimate& line : joint.lines) {
     if (line.order <= assembly || ++count > most) continue;
-    const std::string formula = joint.formula.empty() ? "" : " (" + joint.formula + ")";
-    out += message(out.empty() ? message("Joint ", number, formula, ": ") : "; ", std::llround(line.amplitude * 1e6),
-                   " urad (+-", std::llround(line.margin() * 1e6), ") at order ", line.order);
+    out += message(out.empty() ? message("Joint ", number, joint.bracketed_formula(), ": ") : "; ",
+                   std::llround(line.amplitude * 1e6), " urad (+-", std::llround(line.margin() * 1e6), ") at order ",
+                   line.order);
     if (const std::string cause = cause_of(line.order, joint.drive); !cause.empty()) out += ", " + cause;
   }
   return out.empty() ? out : out + ".";

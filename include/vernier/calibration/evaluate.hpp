@@ -129,7 +129,8 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
     if (staged.stage == Stage::geometry) assess_learned(true, staged.models, test);
   }
   if (errors.stages.back().stage != Stage::session) assess_learned_on_models();
-  out.drift = errors.drift;
+  for (std::size_t s = 0; s < errors.drift.size(); ++s)
+    if (detail::first_of_place(held_out.sets(), s) == s) out.drift.push_back(errors.drift[s]);
   out.prior = errors.prior;
   out.trials = calibration.trials;
   out.chosen = calibration.chosen();

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "vernier/core/so3.hpp"
 #include "vernier/data/detail/csv_table.hpp"
 #include "vernier/data/detail/pose_values.hpp"
+#include "vernier/data/same_pose.hpp"
 
 namespace vernier::detail {
 
@@ -177,43 +179,37 @@ VERNIER_LOCAL std::vector<std::string> named_points(const CsvTable& table) {
   return names;
 }
 
-/// Whether names of rows are those of reflectors: one at least is measured at two configurations.
-VERNIER_LOCAL bool names_reflectors(const CsvTable& table, const std::vector<std::string>& names, const MatrixX& joints,
-                                    bool oriented) {
-  std::map<std::string, std::vector<Index>> rows;  // of different configurations
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto row = static_cast<Index>(i);
-    std::vector<Index>& seen = rows[names[i]];
-    const auto same = [&](Index other) {
-      for (Index j = 0; j < joints.cols(); ++j)
-        if (!same_value(joints(row, j), joints(other, j))) return false;
-      return true;
-    };
-    if (seen.size() < 3 && std::none_of(seen.begin(), seen.end(), same)) seen.push_back(row);
-  }
-  if (rows.size() < 2) return true;
+/// Whether names of rows are those of reflectors: one at least is measured at two poses.
+/// @param poses number of each row's pose
+VERNIER_LOCAL bool names_reflectors(const CsvTable& table, const std::vector<std::string>& names,
+                                    const std::vector<Index>& poses, bool oriented) {
+  std::map<std::string, std::set<Index>> seen;  // poses at which each is measured
+  for (std::size_t i = 0; i < names.size(); ++i) seen[names[i]].insert(poses[i]);
+  if (seen.size() < 2) return true;
   std::size_t most = 0;
-  for (const auto& [name, seen] : rows) most = (std::max)(most, seen.size());
+  for (const auto& [name, at] : seen) most = (std::max)(most, at.size());
   if (most < 2) {
     table.remark(": the column point names poses, each at one configuration; it is not read");
     return false;
   }
-  for (const auto& [name, seen] : rows)
-    if (seen.size() < 3)
+  for (const auto& [name, at] : seen)
+    if (at.size() < 3)
       table.fail_in_header("the reflector '", printable(name), "' is measured at ",
-                           counted(seen.size(), "configuration", "configurations"), ", it needs three or more");
+                           counted(at.size(), "configuration", "configurations"),
+                           ", it needs three or more; call the column otherwise if it names no reflectors");
   if (oriented)
     table.fail_in_header("several reflectors (column point) have no orientations; leave the columns of these out");
   return true;
 }
 
-/// Points that are measured one after another at one configuration were approached from the same one.
-VERNIER_LOCAL void share_approach(PoseColumns& out, int joints) {
+/// Points that are measured one after another at one pose were approached from the same one.
+/// @param poses number of each row's pose
+VERNIER_LOCAL void share_approach(PoseColumns& out, const std::vector<Index>& poses, int joints) {
   for (Index i = 1; i < out.values.rows(); ++i) {
-    bool same = out.points[static_cast<std::size_t>(i)] != out.points[static_cast<std::size_t>(i - 1)];
+    const auto row = static_cast<std::size_t>(i);
+    bool same = out.points[row] != out.points[row - 1] && poses[row] == poses[row - 1];
     for (Index j = 0; j < joints && same; ++j)
-      same = same_value(out.values(i, j), out.values(i - 1, j)) &&
-             (!std::isfinite(out.previous(i, j)) || same_value(out.previous(i, j), out.values(i - 1, j)));
+      same = !std::isfinite(out.previous(i, j)) || same_value(out.previous(i, j), out.values(i - 1, j));
     for (Index j = 0; j < joints && same; ++j) out.previous(i, j) = out.previous(i - 1, j);
   }
 }
@@ -254,8 +250,13 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   for (Index k = 0; k < joints + values; ++k)
     for (Index i = 0; i < of_rows.rows(); ++i)
       out.values(i, k) = k < joints ? of_rows(i, k) : poses.values(i, k - joints);
-  if (!out.points.empty() && !names_reflectors(table, out.points, of_rows, values > 3)) out.points.clear();
-  if (!out.points.empty()) share_approach(out, joints);
+  if (!out.points.empty()) {
+    const std::vector<Index> numbers = pose_numbers(of_rows, {.joint_types = types});
+    if (names_reflectors(table, out.points, numbers, values > 3))
+      share_approach(out, numbers, joints);
+    else
+      out.points.clear();
+  }
   table.remark_unread();
   return out;
 }

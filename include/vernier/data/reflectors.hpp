@@ -25,8 +25,8 @@ struct ReflectorPoses {
 /// Positions of one reflector or several from a CSV file: the columns of `read_dataset`, and `point`, a name or a
 /// number of the reflector of the row. Or all reflectors in one line, as the columns x1_mm, y1_mm, z1_mm, x2_mm ..
 /// zK_mm, of which three empty cells are a reflector that was not seen. Reflectors that are measured one after another
-/// at one configuration were approached from the same one. A column `point` whose names stand at one configuration each
-/// names poses, and is not read.
+/// at one configuration were approached from the same one. A column `point` whose names stand at one pose each
+/// (`SamePose`) names poses, and is not read.
 /// @param path        the file
 /// @param joint_types as in `read_dataset`
 /// @param format      how the file is written

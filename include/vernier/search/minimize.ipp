@@ -62,8 +62,8 @@ VERNIER_IMPL SearchStatus run_search(FunctionRef<SearchSnapshot()> snapshot, Fun
 
 VERNIER_IMPL void check_resumable(Index dimension, const Box& box) {
   box.validate();
-  demand(dimension == box.dimension(), "minimize: a search in ", dimension,
-         " dimensions cannot be resumed in a box of ", box.dimension());
+  demand(dimension == box.dimension(), "minimize: the best point of the search has ", dimension,
+         dimension == 1 ? " entry" : " entries", ", the box ", box.dimension());
 }
 
 }  // namespace detail

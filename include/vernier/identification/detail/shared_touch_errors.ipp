@@ -14,7 +14,8 @@
 
 namespace vernier::detail {
 
-/// Columns of unit errors of each socket, face or ball: its place along each measured value, whitened.
+/// What an error of a socket, a face or a ball does to the whitened residuals. Each column is one error of unit size:
+/// it moves the object along one of its measured values.
 VERNIER_LOCAL MatrixX object_columns(const CalibrationProblem& problem, std::span<const Contact> contacts) {
   std::vector<Index> first, row_of_block;  // column of each block; its first row
   Index columns = 0, rows = 0;

@@ -69,7 +69,7 @@ VERNIER_IMPL std::string joints_section(const ReportInput& input) {
       append_function(joint, from, k, unit, function, band);
       from = k;
     }
-    const std::string name = message("joint ", j + 1, joint.formula.empty() ? "" : " (" + joint.formula + ")");
+    const std::string name = message("joint ", j + 1, joint.bracketed_formula());
     Chart over_angle{.title = message("Function of ", name),
                      .x_label = name + (joint.revolute ? " [deg]" : " [mm]"),
                      .y_label = "joint error [mrad]",

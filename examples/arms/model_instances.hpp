@@ -6,11 +6,16 @@
 /// `vernier_instances`.
 
 #include "dispatch.hpp"
+#include "vernier/compensation/correct_path.hpp"
 #include "vernier/io/model_file.hpp"
+#include "vernier/kinematics/in_controller_joints.hpp"
 
 /// That function, as an instance that is declared (`extern template`) or defined (`template`).
-#define VERNIER_MODEL_INSTANCES(keyword, N) \
-  keyword CalibratedRobot<N> detail::robot_of<N, StandardDh>(const detail::ModelData&);
+#define VERNIER_MODEL_INSTANCES(keyword, N)                                                                          \
+  keyword CalibratedRobot<N> detail::robot_of<N, StandardDh>(const detail::ModelData&);                              \
+  keyword CorrectedPath<N> detail::correct_path<detail::NoClosedForm, InControllerJoints<CalibratedRobot<N>>>(       \
+      const InControllerJoints<CalibratedRobot<N>>&, const detail::NoClosedForm&, const std::vector<PathTarget<N>>&, \
+      const PathOptions<N>&);
 
 namespace vernier {
 

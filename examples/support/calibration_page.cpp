@@ -42,6 +42,7 @@ vn::ReportInput calibration_page(const vn::CalibrationReport& report, const Cali
   vn::ReportInput page = vn::report_input(report, robot.name, poses.learned_from);
   poses.held_out.poses.normalised = page.poses.normalised;
   poses.held_out.poses.gates = page.poses.gates;
+  poses.held_out.poses.visited = page.poses.visited;
   page.poses = std::move(poses.held_out.poses);
   page.times = std::move(poses.held_out.times);
   page.provenance.inputs = measured.inputs;

@@ -34,14 +34,21 @@ std::string one_line(std::string text) {
   return text;
 }
 
-int fail(const char* name, const std::string& what, int code) {
-  std::fflush(stdout);
-  fmt::print(stderr, "{}: {}\n", styled(name, Look::bad, STDERR_FILENO), one_line(what));
-  return code;
-}
-
 /// Where standard output went before what is for people was sent elsewhere; empty: it still goes there.
 std::string output_stream;  // NOLINT(cert-err58-cpp)
+
+/// A line on standard error. If that cannot be written, nobody reads it: the exit code still tells.
+void say(const std::string& line) { static_cast<void>(std::fputs((line + "\n").c_str(), stderr)); }
+
+int fail(const char* name, const std::string& what, int code) {
+  std::fflush(stdout);
+  std::string line = what;
+  if (const std::size_t at = output_stream.empty() ? std::string::npos : line.find(output_stream);
+      at != std::string::npos)
+    line.replace(at, output_stream.size(), "standard output");
+  say(fmt::format("{}: {}", styled(name, Look::bad, STDERR_FILENO), one_line(line)));
+  return code;
+}
 
 /// Keeps standard output for a result, and sends what is printed to standard error.
 /// @return a path that leads to what was standard output
@@ -336,6 +343,8 @@ void Program::parse(const std::string& default_out, const char* out_description,
 
 void Program::open_output(const std::string& name, std::string& file) {
   if (file.empty()) return;
+  if (name != "--out" && std::filesystem::path(file).extension() == ".svg")  // else a figure may overwrite it
+    throw UsageError(fmt::format("{} {}: figures are called so, and this is none; take another name", name, file));
   vernier::detail::Destination to{.file = {}, .descriptor = STDOUT_FILENO};
   vernier::Writing writing = vernier::Writing::through;
   if (file != "-") {
@@ -355,8 +364,8 @@ void Program::open_output(const std::string& name, std::string& file) {
     throw UsageError(fmt::format("{} and {} cannot both be {}", other->second, name,
                                  to.descriptor == STDOUT_FILENO ? "standard output" : file));
   if (writing == vernier::Writing::in_place)
-    fmt::print(stderr, "{}: {} cannot be replaced by a whole new file; it is written in place, at the end\n",
-               about_.name, file);
+    say(fmt::format("{}: {} cannot be replaced by a whole new file; it is written in place, at the end", about_.name,
+                    file));
   if (to.descriptor == STDOUT_FILENO) file = standard_output();
 }
 

@@ -135,7 +135,7 @@ bool draw(const std::filesystem::path& path, const std::string& script) {
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   if (spawned == ENOENT || (spawned == 0 && WIFEXITED(status) && WEXITSTATUS(status) == 127)) {
     missing = true;
-    fmt::print(stderr, "gnuplot is not installed: going on without figures\n");
+    static_cast<void>(std::fputs("gnuplot is not installed: going on without figures\n", stderr));
     return false;
   }
   if (spawned != 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {

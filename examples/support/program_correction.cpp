@@ -135,6 +135,12 @@ const char* remedy(vn::MissingInput missing) {
   }
 }
 
+/// Whether a text has a name, in letters of either case.
+bool names(const std::string& text, const std::string& name) {
+  const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
+  return !name.empty() && std::search(text.begin(), text.end(), name.begin(), name.end(), same) != text.end();
+}
+
 }  // namespace
 
 void add_program_options(Program& program, ProgramCorrection& to) {
@@ -190,6 +196,9 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
   } catch (const std::invalid_argument& e) {
     throw vn::DataError(e.what());
   }
+  for (const std::string& name : options.assume_harmless)
+    if (!names(text, name))
+      throw UsageError(fmt::format("--assume-harmless '{}': {} does not name it", name, options.program));
   const vn::RobotProgram program = vn::parse_program(language, text, options.program, options.assume_harmless);
   const vn::SavedModel model = vn::read_model(input.model);
   if (model.dof() != 6)
@@ -257,7 +266,8 @@ int correct_program(const ProgramCorrection& options, const CorrectionInput& inp
     stamp.push_back(fmt::format("held-out error {:.3f} mm (mean)", error * 1e3));
   if (std::isfinite(radius)) stamp.push_back(fmt::format("errors < {:.3f} mm (95 %)", radius * 1e3));
   if (!outcome.uncorrected.empty()) stamp.push_back(fmt::format("{} not corrected", outcome.uncorrected.size()));
-  vn::write_file(input.out, vn::stamped(vn::replace_targets(text, program, outcome.replaced()), program, stamp));
+  const std::string corrected = vn::replace_targets(text, program, outcome.replaced());
+  vn::write_file(input.out, outcome.targets.empty() ? corrected : vn::stamped(corrected, program, stamp));
   fmt::print("Program: {}\n", shown(input.out));
   return 0;
 }

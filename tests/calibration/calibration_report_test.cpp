@@ -163,7 +163,8 @@ TEST(CalibrationReport, TenPosesAreEnough) {
             "Only 5 independent poses were held out: too few to judge the accuracy; hold out at least 10.");
   report.block_error = 12e-6;
   EXPECT_EQ(report.verdict()[1],
-            "Position error of all 10 held-out rows (5 independent poses): 0.0055 mm mean (95 % interval 0.00157 to "
+            "Position error of all 10 held-out rows (5 independent poses, each counted once): 0.0055 mm mean (95 % "
+            "interval 0.00157 to "
             "0.00943 mm), 0.00955 mm at the 95th percentile, 0.01 mm maximum; links as designed: 0.55 mm mean; the "
             "training rows follow a path, and blocks of neighbours left out have 0.012 mm.");
   report.held_out_poses.clear();

@@ -119,9 +119,10 @@ VERNIER_LOCAL std::string describe_accuracy(const CalibrationReport& report) {
   const MeanInterval mean = report.held_out_mean();
   std::string out =
       message("Position error of all ", e.n, " held-out ",
-              report.independent_poses() < e.n ? message("rows (", report.independent_poses(), " independent poses): ")
-                                               : std::string("poses: "),
-              brief(e.mean), " mm mean (",
+              report.independent_poses() < e.n
+                  ? message("rows (", report.independent_poses(), " independent poses, each counted once): ")
+                  : std::string("poses: "),
+              brief(mean.mean * 1e3), " mm mean (",
               std::isfinite(mean.upper)
                   ? message("95 % interval ", brief(mean.lower * 1e3), " to ", brief(mean.upper * 1e3), " mm")
                   : std::string("too few poses for an interval"),

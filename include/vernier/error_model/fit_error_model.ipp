@@ -54,9 +54,6 @@ class ErrorModelFit {
     const Vector3 down = elastic.gravity ? elastic.gravity->down() : options_.down;
     out.stages.push_back({Stage::elastic, deflects, arms()});
 
-    const bool bent = add_straightness();
-    elastic.straightness = problem_.arm.terms().straightness;
-
     JointTerms all = elastic;
     for (int j = 0; j < all.joints; ++j)
       if (input_.nominal.revolute(j))
@@ -70,9 +67,9 @@ class ErrorModelFit {
     for (Index j = 0; j < joints.cols(); ++j)
       linear.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
     const bool periodic = all.size() > elastic.size(), geared = periodic && (linear.gear_ratio || linear.coupling);
-    const bool harmonics = geared ? add_functions(all, linear) : periodic && model_.add(Block::jointwise, all);
-    const bool jointwise = bent || harmonics || problem_.arm.terms().gear_ratio || problem_.arm.terms().coupling;
-    if (harmonics) {
+    const auto add_joint_functions = [&] {
+      const bool harmonics = geared ? add_functions(all, linear) : periodic && model_.add(Block::jointwise, all);
+      if (!harmonics) return false;
       model_.steps(2);
       estimate.fallback_error = model_.blocks.back().without;
       model_.size_by_evidence(link_unknowns(problem_.arm));  // less is left than when their priors were chosen
@@ -81,7 +78,18 @@ class ErrorModelFit {
       if (geared && !problem_.arm.terms().gear_ratio && !problem_.arm.terms().coupling &&
           model_.add(Block::gears, linear))
         model_.learn_spectrum(4);
+      return true;
+    };
+    bool harmonics = add_joint_functions();
+    const auto geared_already = [&] { return problem_.arm.terms().gear_ratio || problem_.arm.terms().coupling; };
+    const bool bent = add_straightness();  // beside the functions, which look like a bend where they are missing
+    if (bent && periodic && !harmonics && !geared_already()) {  // and the other way round
+      std::erase_if(model_.blocks,
+                    [](const BlockChoice& one) { return one.block == Block::jointwise || one.block == Block::gears; });
+      all.straightness = linear.straightness = problem_.arm.terms().straightness;
+      harmonics = add_joint_functions();
     }
+    const bool jointwise = bent || harmonics || geared_already();
     if (jointwise) {
       if (elastic.gravity) {  // deflection is clearer once all else is modelled
         JointTerms deflecting = problem_.arm.terms();

@@ -82,9 +82,9 @@ VERNIER_LOCAL std::string look_at(const ReportInput& input) {
 
 VERNIER_IMPL std::string verdict_section(const ReportInput& input) {
   const StageErrors& after = stage_of(input, input.after);
-  const ErrorStatistics e = ErrorStatistics::of(after.position * 1e3),
-                        was = ErrorStatistics::of(stage_of(input, input.before).position * 1e3);
-  const MeanInterval interval = MeanInterval::of(after.position * 1e3, input.poses.visited);
+  const ErrorStatistics e = ErrorStatistics::of(after.position * 1e3);
+  const MeanInterval interval = MeanInterval::of(after.position * 1e3, input.poses.visited),
+                     was = MeanInterval::of(stage_of(input, input.before).position * 1e3, input.poses.visited);
   std::string decision, kind;
   if (input.accept) {
     const double limit = *input.accept * 1e3;
@@ -98,18 +98,19 @@ VERNIER_IMPL std::string verdict_section(const ReportInput& input) {
   if (input.passed) kind = *input.passed ? "yes" : "no";
   std::string out =
       message("<p class=\"verdict ", kind, "\">", html_escape(input.headline), input.headline.empty() ? "" : " ",
-              input.held_out ? "Held-out position error" : "Position error", " <strong data-value=\"", e.mean, "\">",
-              brief(e.mean), " mm</strong> (mean; ");
+              input.held_out ? "Held-out position error" : "Position error", " <strong data-value=\"", interval.mean,
+              "\">", brief(interval.mean), " mm</strong> (mean; ");
   out += std::isfinite(interval.upper)
              ? message("95 % interval ", brief(interval.lower), " to ", brief(interval.upper), " mm")
              : std::string("too few poses for an interval");
   out += message("), 95 % of the poses within ", brief(e.p95), " mm, largest ", brief(e.max), " mm",
                  input.before == input.after ? "." : message("; before ", brief(was.mean), " mm."), decision, "</p>\n");
-  out += paragraph(message("Of ", e.n, input.held_out ? " held-out poses" : " poses",
-                           input.rule.empty() ? "" : " (" + input.rule + ")",
-                           input.train_poses > 0 ? message(", fitted to ", input.train_poses, " others") : "",
-                           ". The interval is that of the mean by Student's t, rows that visit one pose counted once."),
-                   "faint");
+  out +=
+      paragraph(message("Of ", e.n, input.held_out ? " held-out poses" : " poses",
+                        input.rule.empty() ? "" : " (" + input.rule + ")",
+                        input.train_poses > 0 ? message(", fitted to ", input.train_poses, " others") : "",
+                        ". Rows that visit one pose count once in the mean and its interval, which is by Student's t."),
+                "faint");
   out += look_at(input);
   if (!input.sentences.empty())
     out += "<details><summary>In words</summary>\n" + bullets(input.sentences) + "</details>\n";

@@ -307,7 +307,7 @@ def test_several_reflectors_are_those_of_the_program(programs, robot, reflectors
         pytest.approx({key: stage["mean_mm"] for key, stage in theirs["stages"].items()}, rel=1e-12)
     q = reflectors.joints[:30]
     for k, (name, one) in enumerate(result.reflectors.items()):
-        saved = vernier.load(tmp_path / ("model.json" if k == 0 else f"model_{k + 1}.json"))
+        saved = vernier.load(tmp_path / ("model.json" if k == 0 else f"model.{k + 1}.json"))
         assert name == theirs["reflectors"][k]["measured"] and repr(one).startswith("<vernier.Reflector: at ")
         assert np.array_equal(saved.correct(q).command, one.model.correct(q).command)
         np.testing.assert_allclose(one.position * 1e3, theirs["reflectors"][k]["offset_mm"], atol=1e-9)

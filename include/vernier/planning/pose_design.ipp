@@ -63,14 +63,16 @@ class GrowingDesign {
     region_variance_ = squared_column_norms(region_then);
     const bool by_region = options.criterion == DesignCriterion::region_variance;
     if (by_region) to_region_ = MatrixX::Zero(region_.cols(), rows.dense.cols());
-    in_parts([&](Index first, Index count) {
-      MatrixX columns = rows_.columns(first, count);
-      if (factor.size() > 0) solve_lower(factor, columns);
-      for (Index c = 0; c < count; ++c) add_to_variance(first + c, squared_in(columns, c), 1);
-      if (by_region)
-        add_transposed_product(VERNIER_LATER(to_region_).middleCols(first * block_, count * block_), region_then,
-                               columns);
-    });
+    in_parts(
+        [&](Index first, Index count) {
+          MatrixX columns = rows_.columns(first, count);
+          if (factor.size() > 0) solve_lower(factor, columns);
+          for (Index c = 0; c < count; ++c) add_to_variance(first + c, squared_in(columns, c), 1);
+          if (by_region)
+            add_transposed_product(VERNIER_LATER(to_region_).middleCols(first * block_, count * block_), region_then,
+                                   columns);
+        },
+        factor.size() > 0 ? part / 8 : part);  // a solution takes longest
   }
 
   /// Number of candidates.
@@ -143,10 +145,10 @@ class GrowingDesign {
 
   /// Calls f(first, count) for all candidates, some at a time, and reports.
   template <class F>
-  void in_parts(const F& f) const {
-    for (Index first = 0; first < size(); first += part) {
+  void in_parts(const F& f, Index at_a_time = part) const {
+    for (Index first = 0; first < size(); first += at_a_time) {
       report_planning(observer_, progress_);
-      f(first, (std::min)(part, size() - first));
+      f(first, (std::min)(at_a_time, size() - first));
     }
   }
   /// Products of a candidate's columns with each other; zero beyond them.

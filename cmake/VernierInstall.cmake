@@ -87,6 +87,7 @@ if(PROJECT_IS_TOP_LEVEL)
   if(VERNIER_WITH_PYTHON)
     # Two packages: python3-vernier has the component `python`, libvernier-dev all others.
     set(CPACK_DEB_COMPONENT_INSTALL ON)
+    set(CPACK_STRIP_FILES ON)  # names take a sixth of the module
     set(CPACK_COMPONENTS_ALL Unspecified python)
     set(CPACK_COMPONENTS_GROUPING IGNORE)
     set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_NAME libvernier-dev)

@@ -29,13 +29,14 @@ struct CorrectionRows {
 
 /// A path to be corrected; joint values are those of the controller.
 struct PathTask {
-  RowsView poses{};             ///< n x 16; none: those of the nominal arm at `joints`
-  RowsView joints{};            ///< n x joints, near which the branch is chosen; NaN, or none, where any will do
-  std::vector<bool> linear{};   ///< n: whether the tool moves there along a line; empty: no move is
-  std::vector<double> start{};  ///< joint values before the first target; empty: unknown
-  double tolerance = 0.05e-3;   ///< distance of the tool from the line of a linear move [m]
-  double max_joint_step = 0.5;  ///< between commands of a linear move [rad, m]
-  bool approach = true;         ///< whether each command is for the approach from the one before
+  RowsView poses{};                 ///< n x 16; none: those of the nominal arm at `joints`
+  RowsView joints{};                ///< n x joints, near which the branch is chosen; NaN, or none, where any will do
+  std::vector<bool> linear{};       ///< n: whether the tool moves there along a line; empty: no move is
+  std::vector<double> start{};      ///< joint values before the first target; empty: unknown
+  double tolerance = 0.05e-3;       ///< distance of the tool from the line of a linear move [m]
+  double max_joint_step = 0.5;      ///< between commands of a linear move [rad, m]
+  bool approach = true;             ///< whether each command is for the approach from the one before
+  vernier::ObserverRef observer{};  ///< see `vernier::PathOptions`
 };
 
 /// A corrected path, a row a point.

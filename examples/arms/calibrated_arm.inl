@@ -83,7 +83,8 @@ class CalibratedArmOf final : public CalibratedArm {
     vn::PathOptions<N> options{.limits = robot_.limits(),
                                .tolerance = task.tolerance,
                                .max_joint_step = task.max_joint_step,
-                               .approach = task.approach};
+                               .approach = task.approach,
+                               .observer = task.observer};
     if (!task.start.empty()) {
       options.start.setZero();
       std::copy_n(task.start.begin(), joints(), options.start.begin());

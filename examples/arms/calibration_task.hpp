@@ -9,6 +9,7 @@
 #include <string>
 
 #include "calibrated_arm.hpp"
+#include "found_reflectors.hpp"
 #include "measured_data.hpp"
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/calibration_report.hpp"
@@ -34,8 +35,11 @@ struct CalibrationTask {
 struct CalibrationOutcome {
   vernier::CalibrationReport report{};           ///< the assessment
   vernier::ReportInput page{};                   ///< what an HTML page shows of it
-  std::shared_ptr<const CalibratedArm> model{};  ///< what is deployed
-  std::string results{};                         ///< all results as JSON text
+  std::shared_ptr<const CalibratedArm> model{};  ///< what is deployed, with the tool of the first reflector
+  /// Of several reflectors: where each is, and its model.
+  std::vector<FoundReflector> reflectors{};
+  std::vector<std::shared_ptr<const CalibratedArm>> models{};
+  std::string results{};  ///< all results as JSON text
 };
 
 /// Calibrates and assesses.

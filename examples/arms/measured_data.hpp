@@ -12,6 +12,7 @@
 #include "vernier/data/contacts.hpp"
 #include "vernier/data/csv_format.hpp"
 #include "vernier/data/dataset.hpp"
+#include "vernier/data/reflectors.hpp"
 #include "vernier/io/robot_file.hpp"
 
 namespace support {
@@ -28,6 +29,7 @@ struct MeasuredPoses {
   std::vector<vernier::Matrix6> covariances{};  ///< of position and rotation vector; none: those of the sensor
   vernier::RowOrigin origin{};                  ///< lines in files; empty where they are from none
   std::string name{};                           ///< in messages
+  std::vector<std::string> points{};            ///< reflector of each row; none: all rows are of one
 
   /// Number of poses.
   vernier::Index size() const { return joints.rows(); }
@@ -64,6 +66,16 @@ vernier::Dataset<N> dataset_of(const MeasuredPoses& from, const vernier::Control
   return from.origin.empty() ? out : out.from(from.origin);
 }
 
+/// The poses of each reflector, as the library has them; one without a name where there are no names.
+/// @param same within which joint values of the chain rows are one pose
+/// @throws std::invalid_argument as above, and as `split_reflectors`
+template <int N>
+std::vector<vernier::ReflectorPoses<N>> reflectors_of(const MeasuredPoses& from,
+                                                      const vernier::ControllerMap& controller,
+                                                      const vernier::SamePose& same = {}) {
+  return vernier::split_reflectors(dataset_of<N>(from, controller), from.points, same);
+}
+
 /// Checks shapes and values, as data of the arm are checked when they are used.
 /// @throws std::invalid_argument on shapes that do not fit together or values that are not finite, naming the row
 void validate(const MeasuredPoses& poses);
@@ -71,7 +83,7 @@ void validate(const MeasuredPoses& poses);
 /// @throws std::invalid_argument on a row that is not there
 MeasuredPoses rows_of(const MeasuredPoses& poses, const std::vector<vernier::Index>& rows);
 
-/// Measured poses of a file, columns as `read_dataset` has them.
+/// Measured poses of a file, columns as `read_reflectors` has them.
 /// @throws vernier::DataError naming file, line and column
 MeasuredPoses read_measured_poses(const std::string& path, const vernier::RobotDescription& robot,
                                   const vernier::CsvFormat& format = {});
@@ -83,7 +95,7 @@ MeasuredDistances read_measured_distances(const std::string& path, const vernier
 /// @throws vernier::DataError naming file, line and column
 std::vector<vernier::Contact> read_measured_contacts(const std::string& path, const vernier::RobotDescription& robot,
                                                      const vernier::CsvFormat& format = {});
-/// Writes poses as the programs read them.
+/// Writes poses as the programs read them; those of reflectors in the order of their times.
 /// @throws std::runtime_error where the file cannot be written
 void write_measured_poses(const std::string& path, const MeasuredPoses& poses, const vernier::RobotDescription& robot);
 

@@ -7,6 +7,8 @@
 
 #include "controller_rows.hpp"
 #include "nominal_arm.hpp"
+#include "vernier/core/simd.hpp"
+#include "vernier/kinematics/detail/chain_blocks.hpp"
 #include "with_branches.hpp"
 
 namespace support {
@@ -14,6 +16,41 @@ namespace support {
 namespace {
 
 namespace vn = vernier;
+
+using Pair = vn::detail::Simd<2>::Double;
+
+/// Copies rows of N numbers into columns, two rows at a time.
+template <int N>
+void to_columns(const double* rows, vn::Index n, double* columns, vn::Index stride) noexcept {
+  vn::Index i = 0;
+  for (; i + 2 <= n; i += 2, rows += 2 * N) {
+    int j = 0;
+    for (; j + 2 <= N; j += 2) {
+      Pair a, b;
+      vn::detail::load<2>(a, rows + j);
+      vn::detail::load<2>(b, rows + N + j);
+      vn::detail::store<2>(columns + j * stride + i, Pair{a[0], b[0]});
+      vn::detail::store<2>(columns + (j + 1) * stride + i, Pair{a[1], b[1]});
+    }
+    if (j < N) vn::detail::store<2>(columns + j * stride + i, Pair{rows[j], rows[N + j]});
+  }
+  for (int j = 0; j < N && i < n; ++j) columns[j * stride + i] = rows[j];
+}
+
+/// Copies three columns of n coordinates into points, two at a time.
+inline void to_points(const double* columns, vn::Index n, double* points) noexcept {
+  vn::Index i = 0;
+  for (; i + 2 <= n; i += 2, points += 6) {
+    Pair x, y, z;
+    vn::detail::load<2>(x, columns + i);
+    vn::detail::load<2>(y, columns + n + i);
+    vn::detail::load<2>(z, columns + 2 * n + i);
+    vn::detail::store<2>(points, Pair{x[0], y[0]});
+    vn::detail::store<2>(points + 2, Pair{z[0], x[1]});
+    vn::detail::store<2>(points + 4, Pair{y[1], z[1]});
+  }
+  for (int k = 0; k < 3 && i < n; ++k) points[k] = columns[k * n + i];
+}
 
 template <int N>
 class NominalArmOf final : public NominalArm {
@@ -24,17 +61,18 @@ class NominalArmOf final : public NominalArm {
   int joints() const override { return change_.moving(); }
 
   void poses(RowsView q, double* out, vn::ExecutorRef executor) const override {
-    in_blocks(q, executor, [&](const vn::JointRows<N>& joints, vn::Index first) {
-      const std::vector<vn::Isometry3> poses = robot_.arm.poses(joints);
-      for (std::size_t i = 0; i < poses.size(); ++i) set_pose(poses[i], out + 16 * (first + static_cast<vn::Index>(i)));
+    in_blocks(q, executor, [&](const double* joints, vn::Index n, vn::Index first) {
+      vn::Isometry3 poses[block];
+      evaluate(joints, n, {.poses = poses});
+      for (vn::Index i = 0; i < n; ++i) set_pose(poses[i], out + 16 * (first + i));
     });
   }
 
   void positions(RowsView q, double* out, vn::ExecutorRef executor) const override {
-    in_blocks(q, executor, [&](const vn::JointRows<N>& joints, vn::Index first) {
-      const vn::PointRows points = robot_.arm.positions(joints);
-      for (vn::Index i = 0; i < points.rows(); ++i)
-        for (vn::Index k = 0; k < 3; ++k) out[3 * (first + i) + k] = points(i, k);
+    in_blocks(q, executor, [&](const double* joints, vn::Index n, vn::Index first) {
+      double positions[3 * block];
+      evaluate(joints, n, {.positions = positions});
+      to_points(positions, n, out + 3 * first);
     });
   }
 
@@ -92,26 +130,33 @@ class NominalArmOf final : public NominalArm {
   }
 
  private:
-  /// Calls `use` with chain joints of blocks of rows, by column: as many as fit into the cache.
+  static constexpr vn::Index block = 64;  // rows whose joints and poses stay in the cache
+
+  /// Calls `use` with chain joints of blocks of rows: columns of `block` numbers, how many count, the first row.
   template <class Use>
   void in_blocks(RowsView q, vn::ExecutorRef executor, const Use& use) const {
-    constexpr vn::Index block = 512;
     executor.for_ranges(q.rows, [&](vn::Index begin, vn::Index end) {
-      vn::JointRows<N> joints;
+      double joints[N * block];
       for (vn::Index first = begin; first < end; first += block) {
-        const vn::Index rows = std::min(block, end - first);
-        joints.resize(rows, N);
+        const vn::Index n = std::min(block, end - first);
         if (change_.same()) {
-          const double* from = q.row(first);
-          for (vn::Index i = 0; i < rows; ++i)
-            for (vn::Index j = 0; j < N; ++j) joints(i, j) = *from++;
+          to_columns<N>(q.row(first), n, joints, block);
         } else {
-          for (vn::Index i = 0; i < rows; ++i)
-            vn::set_configuration(joints, i, chain_joints(change_, q.row(first + i)));
+          for (vn::Index i = 0; i < n; ++i) {
+            const vn::JointVector<N> of_row = chain_joints(change_, q.row(first + i));
+            for (int j = 0; j < N; ++j) joints[j * block + i] = of_row(j);
+          }
         }
-        use(std::as_const(joints), first);
+        use(joints, n, first);
       }
     });
+  }
+
+  void evaluate(const double* joints, vn::Index n, const vn::detail::BlockResults& results) const {
+    const double* tool = robot_.arm.tool().data();
+    vn::detail::evaluate_chain(robot_.arm.chain().view(),
+                               {.base = robot_.arm.base().data(), .point = tool + 12, .tool = tool}, joints, n, block,
+                               results);
   }
 
   vn::DescribedRobot<N> robot_;

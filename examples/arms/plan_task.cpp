@@ -10,9 +10,9 @@ namespace {
 namespace vn = vernier;
 
 template <int N>
-PlanOutcome plan_of(const PlanTask& task, std::uint64_t seed) {
+PlanOutcome plan_of(const PlanTask& task, std::uint64_t seed, const vn::ObserverRef& observer) {
   const vn::DescribedRobot<N> robot = task.robot.arm<N>();
-  vn::PlanOptions options{.count = task.count, .oriented = task.oriented};
+  vn::PlanOptions options{.count = task.count, .oriented = task.oriented, .observer = observer};
   options.errors.drives = robot.drives;
   options.errors.down = robot.down;
   vn::MeasurementConstraints constraints{.controller = robot.controller};
@@ -28,7 +28,8 @@ PlanOutcome plan_of(const PlanTask& task, std::uint64_t seed) {
     candidates.previous = candidates.joints;
     for (vn::Index i = 1; i < candidates.joints.rows(); ++i) candidates.previous.row(i) = candidates.joints.row(i - 1);
   } else {
-    candidates = vn::sample_candidates(robot.arm, robot.limits, constraints, task.candidates, seed);
+    candidates = vn::sample_candidates(robot.arm, robot.limits, constraints, task.candidates, seed, observer);
+    if (candidates.joints.rows() < task.candidates) return {};  // stopped
   }
   const vn::MeasurementPlan<N> found = vn::plan_measurements(robot.arm, candidates, options, measured);
   const vn::MatrixX joints = found.joints;
@@ -37,14 +38,14 @@ PlanOutcome plan_of(const PlanTask& task, std::uint64_t seed) {
 
 }  // namespace
 
-PlanOutcome plan(const PlanTask& task, std::uint64_t seed) {
+PlanOutcome plan(const PlanTask& task, std::uint64_t seed, const vn::ObserverRef& observer) {
   const int joints = task.robot.controller_joints();
   vn::demand(task.given.rows() == 0 || task.given.cols() == joints, "plan: candidates of ", task.given.cols(),
              " joints, ", task.robot.name, " has ", joints);
   for (const MeasuredPoses& poses : task.measured)
     vn::demand(poses.joints.cols() == joints, "plan: measurements of ", poses.joints.cols(), " joints, ",
                task.robot.name, " has ", joints);
-  return dispatch_dof(task.robot.dof(), [&](auto n) { return plan_of<n()>(task, seed); });
+  return dispatch_dof(task.robot.dof(), [&](auto n) { return plan_of<n()>(task, seed, observer); });
 }
 
 }  // namespace support

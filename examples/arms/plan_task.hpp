@@ -36,6 +36,7 @@ struct PlanOutcome {
 
 /// Chooses poses.
 /// @throws std::invalid_argument for unbounded limits, too few candidates, or constraints that admit hardly any pose
-PlanOutcome plan(const PlanTask& task, std::uint64_t seed);
+/// @param observer see `vernier::PlanOptions`; told of candidates before. A stop leaves an unfinished plan.
+PlanOutcome plan(const PlanTask& task, std::uint64_t seed, const vernier::ObserverRef& observer = {});
 
 }  // namespace support

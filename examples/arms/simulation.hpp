@@ -4,11 +4,14 @@
 /// @file
 /// A virtual arm that is measured: links, gears, compliance and backlash err, drawn from a seed.
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
 #include "measured_data.hpp"
+#include "vernier/core/fit_options.hpp"
 #include "vernier/core/rng.hpp"
 #include "vernier/simulation/error_sources.hpp"
 
@@ -31,14 +34,39 @@ inline std::uint64_t digest(const vernier::MatrixX& joints) {
   return out;
 }
 
+/// An arm whose poses are computed a few at a time, and are reported.
+template <class Arm>
+struct ObservedArm : Arm {
+  vernier::ObserverRef observer;  ///< told how many poses are done
+
+  ObservedArm(const Arm& arm, const vernier::ObserverRef& who) : Arm(arm), observer(who) {}
+
+  /// base_T_tool at n configurations.
+  /// @throws std::runtime_error where the observer requests a stop
+  std::vector<vernier::Isometry3> poses(const vernier::JointRows<Arm::dof>& joints) const {
+    constexpr vernier::Index block = 1024;
+    std::vector<vernier::Isometry3> out;
+    for (vernier::Index done = 0; done < joints.rows(); done += block) {
+      if (!observer({done, done, 0})) throw std::runtime_error("the simulation was stopped");
+      const vernier::JointRows<Arm::dof> some = joints.middleRows(done, std::min(block, joints.rows() - done));
+      const auto found = vernier::poses(static_cast<const Arm&>(*this), some);
+      out.insert(out.end(), found.begin(), found.end());
+    }
+    return out;
+  }
+};
+
 /// Measures the virtual arm of a seed.
 /// @param joints of the chain, visited in their order
 /// @param points reflectors on the flange, the first in its place for any number of them; several measure no
 /// orientation
+/// @param observer told of the poses of each reflector
 /// @return       the rows of each reflector
+/// @throws std::runtime_error where the observer requests a stop
 template <int N>
 std::vector<vernier::Dataset<N>> simulated(const vernier::DescribedRobot<N>& robot, const vernier::JointRows<N>& joints,
-                                           const SimulationSettings& settings, std::uint64_t seed, int points = 1) {
+                                           const SimulationSettings& settings, std::uint64_t seed, int points = 1,
+                                           const vernier::ObserverRef& observer = {}) {
   namespace vn = vernier;
   const auto types = robot.arm.model().joint_types();
   const auto chain = vn::with_geometric_errors(robot.arm.model(), {}, vn::child_seed(seed, 0));
@@ -61,8 +89,9 @@ std::vector<vernier::Dataset<N>> simulated(const vernier::DescribedRobot<N>& rob
                                    settings.orientations && points == 1};
   std::vector<vn::Dataset<N>> out;
   for (int point = 0; point < points; ++point) {
-    const vn::Framed<vn::WithJointErrors<vn::DhChain<N>>> arm(vn::WithJointErrors<vn::DhChain<N>>(chain, errors), base,
-                                                              robot.arm.tool() * drawn(0.1, 1));
+    using Arm = vn::Framed<vn::WithJointErrors<vn::DhChain<N>>>;
+    const ObservedArm<Arm> arm(
+        Arm(vn::WithJointErrors<vn::DhChain<N>>(chain, errors), base, robot.arm.tool() * drawn(0.1, 1)), observer);
     out.push_back(vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
                                             vn::child_seed(seed, digest(joints) + static_cast<std::uint64_t>(point))));
   }
@@ -71,8 +100,11 @@ std::vector<vernier::Dataset<N>> simulated(const vernier::DescribedRobot<N>& rob
 
 /// Measures the virtual arm of a seed, whatever its number of joints.
 /// @param joints n x joints of the controller, visited in their order [rad, m]
+/// @param points   reflectors, see above; each pose is measured with all of them
 /// @throws std::invalid_argument for another number of joints
+/// @throws std::runtime_error where the observer requests a stop
 MeasuredPoses simulate_poses(const vernier::RobotDescription& robot, const vernier::MatrixX& joints,
-                             const SimulationSettings& settings, std::uint64_t seed);
+                             const SimulationSettings& settings, std::uint64_t seed, int points = 1,
+                             const vernier::ObserverRef& observer = {});
 
 }  // namespace support

@@ -51,40 +51,6 @@ std::string file_hashes(const std::vector<vn::Dataset<N>>& sets) {
   return out;
 }
 
-/// The tools of sets that have their own.
-template <class Chain>
-std::vector<FoundReflector> reflectors_of(const vn::Calibration<Chain>& calibration,
-                                          const vn::Measurements<Chain::dof>& measured) {
-  std::vector<FoundReflector> out;
-  const vn::Index tool = vn::ArmParameters::chain_end(Chain::dof);
-  for (std::size_t s = 0; s < measured.poses().size(); ++s) {
-    FoundReflector one{measured.sets()[s].name, measured.poses()[s].size(),
-                       calibration.model(s).identified().tool().translation(), vn::Vector3::Zero()};
-    const vn::ErrorModelEstimate estimate = calibration.errors.of_station(static_cast<int>(s));
-    const auto& unknowns = estimate.arm.geometric();
-    for (std::size_t k = 0; k < unknowns.size() && estimate.covariance.size() > 0; ++k)
-      if (const vn::Index axis = unknowns[k].parameter - tool; axis >= 0 && axis < 3 && !unknowns[k].thermal) {
-        const auto at = static_cast<vn::Index>(k);
-        one.std(axis) = unknowns[k].scale * std::sqrt(estimate.covariance(at, at));
-      }
-    out.push_back(std::move(one));
-  }
-  return out;
-}
-
-/// What a page shows of reflectors.
-vn::ReportTable reflector_table(const std::vector<FoundReflector>& reflectors) {
-  vn::ReportTable out{.title = "Reflectors",
-                      .note = "Where each measured point is in the frame of the flange, with standard deviations.",
-                      .head = {"measured", "poses", "x [mm]", "y [mm]", "z [mm]", "std [mm]"}};
-  for (const FoundReflector& one : reflectors)
-    out.rows.push_back(
-        {one.name, fmt::format("{}", one.rows), fmt::format("{:.3f}", one.offset.x() * 1e3),
-         fmt::format("{:.3f}", one.offset.y() * 1e3), fmt::format("{:.3f}", one.offset.z() * 1e3),
-         fmt::format("{:.3f}, {:.3f}, {:.3f}", one.std.x() * 1e3, one.std.y() * 1e3, one.std.z() * 1e3)});
-  return out;
-}
-
 template <int N>
 vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, const MeasuredFiles<N>& measured,
                                    const CalibrationOptions& o) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "calibration_options.hpp"
+#include "found_reflectors.hpp"
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/core/fit_options.hpp"
@@ -20,14 +21,6 @@ namespace support {
 
 /// Generations of a search of priors.
 inline constexpr vernier::Index prior_generations = 15;
-
-/// A reflector on the flange.
-struct FoundReflector {
-  std::string name;         ///< the set of poses that measured it
-  vernier::Index rows = 0;  ///< number of poses it was fitted to
-  vernier::Vector3 offset;  ///< its place in the frame of the flange [m]
-  vernier::Vector3 std;     ///< standard deviations [m]; 0 where it was not estimated
-};
 
 /// A calibration from measured poses, assessed.
 struct PoseCalibration {

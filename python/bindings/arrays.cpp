@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/simd.hpp"
 
 namespace python {
 
@@ -13,10 +14,36 @@ namespace {
 
 namespace vn = vernier;
 
+/// Whether all numbers are finite.
+bool all_finite(const double* from, vn::Index n) {
+  double sum = 0;  // of zeros, unless a number is not finite
+  vn::detail::run_same_bits([&]<int W>() VERNIER_INLINED {
+    constexpr int parts = 4;
+    typename vn::detail::Simd<W>::Double sums[parts] = {}, values;
+    vn::Index k = 0;
+    for (; k + parts * W <= n; k += parts * W)
+      for (int part = 0; part < parts; ++part) {
+        vn::detail::load<W>(values, from + k + part * W);
+        sums[part] += 0.0 * values;
+      }
+    for (; k < n; ++k) sum += 0 * from[k];
+    for (int part = 0; part < parts; ++part)
+      for (int lane = 0; lane < W; ++lane) sum += sums[part][lane];
+  });
+  return std::isfinite(sum);
+}
+
 std::string shape_of(const py::array& array) {
   std::string out = "(";
   for (py::ssize_t k = 0; k < array.ndim(); ++k) out += vn::message(k > 0 ? ", " : "", array.shape(k));
   return out + (array.ndim() == 1 ? ",)" : ")");
+}
+
+/// Refuses arrays of which some numbers are not meant.
+void refuse_masked(const py::object& object, const char* name) {
+  if (!py::isinstance<py::array>(object) || Py_TYPE(object.ptr()) == py::detail::npy_api::get().PyArray_Type_) return;
+  vn::demand(!py::isinstance(object, py::module_::import("numpy.ma").attr("MaskedArray")), name,
+             ": a masked array is not read; leave the rows out, or use its method filled");
 }
 
 }  // namespace
@@ -32,6 +59,7 @@ Array numbers(const py::object& object, const char* name) {
     PyErr_Clear();
     vn::demand(false, name, ": an array of numbers is expected, not ", std::string(py::str(py::type::of(object))));
   }
+  refuse_masked(object, name);
   const char kind = array.dtype().kind();
   vn::demand(kind == 'f' || kind == 'i' || kind == 'u', name, ": an array of real numbers is expected, not of ",
              std::string(py::str(array.dtype())));
@@ -61,6 +89,7 @@ Rows Rows::of(const Array& array, const char* name, bool single) {
 }
 
 void Rows::check(const char* name) const {
+  if (all_finite(view_.data, view_.rows * view_.columns)) return;
   for (vn::Index i = 0; i < view_.rows; ++i)
     for (vn::Index k = 0; k < view_.columns; ++k)
       vn::demand(std::isfinite(view_.row(i)[k]), name, ": row ", i, " has the value ", view_.row(i)[k]);
@@ -84,6 +113,44 @@ Rows poses(const py::object& object, const char* name) {
     vn::demand(off < 1e-6 && determinant > 0, name, ": row ", i,
                " is no pose: a rotation and a position over (0, 0, 0, 1)");
   }
+  return out;
+}
+
+std::vector<bool> flags_of(const py::object& object, const char* name, vn::Index rows) {
+  const py::array array = py::array::ensure(object);
+  if (!array) PyErr_Clear();
+  vn::demand(array && array.dtype().kind() == 'b' && array.ndim() <= 1, name, ": True, False, or one of them a row is ",
+             "expected, not ", std::string(py::repr(object)));
+  vn::demand(array.ndim() == 0 || array.shape(0) == rows, name, ": ", array.size(), " values of ", rows, " rows");
+  std::vector<bool> out(static_cast<std::size_t>(rows));
+  const auto values = py::array_t<bool, py::array::c_style | py::array::forcecast>(array);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = values.data()[array.ndim() == 0 ? 0 : i];
+  return out;
+}
+
+std::vector<vn::Index> row_numbers(const py::object& object, const char* name, vn::Index rows) {
+  const py::array array = py::array::ensure(object);
+  if (!array) PyErr_Clear();
+  const char kind = array ? array.dtype().kind() : ' ';
+  vn::demand(array && array.ndim() == 1 && (kind == 'i' || kind == 'u' || kind == 'b' || array.size() == 0), name,
+             ": an array of whole numbers is expected, or of a flag a row");
+  std::vector<vn::Index> out;
+  if (kind == 'b') {
+    const std::vector<bool> chosen = flags_of(object, name, rows);
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      if (chosen[i]) out.push_back(static_cast<vn::Index>(i));
+    return out;
+  }
+  const auto values = py::array_t<vn::Index, py::array::c_style | py::array::forcecast>(array);
+  out.assign(values.data(), values.data() + values.size());
+  return out;
+}
+
+vn::Index whole_number(const py::object& object, const char* name) {
+  const auto out = static_cast<vn::Index>(PyNumber_AsSsize_t(object.ptr(), PyExc_OverflowError));
+  const bool failed = PyErr_Occurred() != nullptr;
+  PyErr_Clear();
+  vn::demand(!failed, name, ": a whole number is expected, not ", std::string(py::repr(object)));
   return out;
 }
 

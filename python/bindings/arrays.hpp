@@ -68,6 +68,18 @@ Array numbers(const py::object& object, const char* name);
 /// @throws std::invalid_argument on another shape, or rows that are no rigid motion
 Rows poses(const py::object& object, const char* name);
 
+/// True and false: one, or one a row.
+/// @throws std::invalid_argument for anything else, and for another number of rows
+std::vector<bool> flags_of(const py::object& object, const char* name, vernier::Index rows);
+
+/// Numbers of rows, from an array of whole numbers, or of a flag a row.
+/// @throws std::invalid_argument for anything else
+std::vector<vernier::Index> row_numbers(const py::object& object, const char* name, vernier::Index rows);
+
+/// A whole number.
+/// @throws std::invalid_argument for anything else
+vernier::Index whole_number(const py::object& object, const char* name);
+
 /// Rows in a matrix.
 vernier::MatrixX matrix_of(const Rows& rows);
 /// A vector of n numbers.

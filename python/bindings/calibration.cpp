@@ -43,13 +43,14 @@ std::vector<vn::Learner> learners_of(const std::vector<std::string>& words) {
 void hold_out(const py::object& test, support::CalibrationTask& task) {
   if (py::isinstance<Measurements>(test)) {
     task.test = test.cast<const Measurements&>().data;
-  } else if (py::isinstance<py::int_>(test)) {
-    task.test_every = test.cast<vn::Index>();
+  } else if (PyIndex_Check(test.ptr())) {
+    task.test_every = whole_number(test, "test");
     vn::demand(task.test_every >= 2, "test: every ", task.test_every, "th row cannot be held out; at least 2");
   } else {
-    vn::demand(py::isinstance<py::float_>(test),
-               "test must be Measurements, K for every K-th row (int), or a share of the rows (float)");
-    task.test_fraction = test.cast<double>();
+    task.test_fraction = PyFloat_AsDouble(test.ptr());
+    const bool failed = PyErr_Occurred() != nullptr;
+    PyErr_Clear();
+    vn::demand(!failed, "test must be Measurements, K for every K-th row (int), or a share of the rows (float)");
     vn::demand(task.test_fraction > 0 && task.test_fraction < 1, "test: a share of ", task.test_fraction,
                ", must be between 0 and 1");
   }
@@ -71,6 +72,7 @@ py::object calibrate(const Robot& robot, const Measurements& data, const py::obj
   support::CalibrationTask task{robot.about, data.data};
   hold_out(test, task);
   task.date = date;
+  vn::demand(!accept || *accept > 0, "accept is ", accept.value_or(0), ", must be positive");
   task.accept = accept;
   task.calibrate.sensors = {position_sigma, orientation_sigma, distance_sigma, contact_sigma,
                             joint_sigma,    use_orientations,  loss_of(loss)};
@@ -95,9 +97,17 @@ py::object calibrate(const Robot& robot, const Measurements& data, const py::obj
   const py::module_ results = py::module_::import("vernier.results");
   const py::object page =
       results.attr("Report")(vn::report_html(out.page), report.summary(), report.full_summary(), out.results);
-  return results.attr("CalibrationResult")(
-      py::cast(Model{out.model}), page, verdict, report.chosen.key(), stages_of(report, false),
-      report.oriented ? py::object(stages_of(report, true)) : py::dict(), report.train_poses, report.test_poses());
+  py::dict reflectors;
+  for (std::size_t k = 0; k < out.reflectors.size(); ++k) {
+    const support::FoundReflector& one = out.reflectors[k];
+    const auto three = [](const vn::Vector3& v) { return array_of(vn::VectorX(v)); };
+    reflectors[py::str(one.name)] =
+        results.attr("Reflector")(three(one.offset), three(one.std), one.rows, py::cast(Model{out.models[k]}));
+  }
+  return results.attr("CalibrationResult")(py::cast(Model{out.model}), page, verdict, report.chosen.key(),
+                                           stages_of(report, false),
+                                           report.oriented ? py::object(stages_of(report, true)) : py::dict(),
+                                           report.train_poses, report.test_poses(), reflectors);
 }
 
 }  // namespace

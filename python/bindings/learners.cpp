@@ -61,7 +61,11 @@ class Options {
   void take(const char* name, T& value) {
     if (!options_.contains(name)) return;
     const py::object given = options_.attr("pop")(name);
-    if (!given.is_none()) value = given.cast<T>();
+    try {
+      if (!given.is_none()) value = given.cast<T>();
+    } catch (const py::cast_error&) {
+      vn::demand(false, name, ": ", std::string(py::repr(given)), " cannot be used");
+    }
   }
   template <class T>
   void take_word(const char* name, T& value, T (*meaning)(const std::string&)) {
@@ -159,6 +163,45 @@ Predictor fit(const std::string& learner, const py::dict& given, const py::objec
   return out;
 }
 
+constexpr int pickle_schema = 1;
+
+vn::VectorX vector_of_state(const py::handle& object) {
+  const auto array = object.cast<Array>();
+  return Eigen::Map<const vn::VectorX>(array.data(), array.size());
+}
+
+py::tuple state_of(const Predictor& predictor) {
+  const vn::PredictorParts parts = predictor.map->parts();
+  py::object spread = py::none();
+  if (parts.spread)
+    spread = py::make_tuple(array_of(parts.spread->inverse), array_of(parts.spread->ones), parts.spread->precision,
+                            array_of(parts.spread->signal_deviation), parts.spread->noise_ratio);
+  return py::make_tuple(pickle_schema, predictor.learner, predictor.flat, parts.inputs, parts.node_function,
+                        parts.input_map, array_of(parts.scaling.offset), array_of(parts.scaling.factor),
+                        array_of(parts.nodes), array_of(parts.coefficients), array_of(parts.offset), spread);
+}
+
+Predictor predictor_of_state(const py::tuple& state) {
+  vn::demand(state.size() == 12 && state[0].cast<int>() == pickle_schema,
+             "Predictor: pickled by another version of this module");
+  vn::PredictorParts parts{state[3].cast<vn::Index>(), state[4].cast<int>(),
+                           state[5].cast<int>(),       {vector_of_state(state[6]), vector_of_state(state[7])},
+                           vector_of_state(state[8]),  {},
+                           vector_of_state(state[10]), {}};
+  bool flat = false;
+  parts.coefficients = columns_of(state[9], "coefficients", flat);
+  if (!state[11].is_none()) {
+    const auto of = state[11].cast<py::tuple>();
+    const vn::VectorX inverse = vector_of_state(of[0]);
+    parts.spread = vn::detail::SpreadParts{{inverse.data(), inverse.data() + inverse.size()},
+                                           vector_of_state(of[1]),
+                                           of[2].cast<double>(),
+                                           vector_of_state(of[3]),
+                                           of[4].cast<double>()};
+  }
+  return {std::make_shared<const vn::AnyPredictor>(parts), state[1].cast<std::string>(), state[2].cast<bool>()};
+}
+
 Array shaped(const Predictor& predictor, const vn::MatrixX& values) {
   return predictor.flat ? array_of(vn::VectorX(values.col(0))) : array_of(values);
 }
@@ -207,10 +250,12 @@ void bind_learners(py::module_& module) {
             return array_of(p.map->derivative(vector_of(x, "x", p.map->inputs())));
           },
           py::arg("x"), "Derivative of the outputs at one sample, (outputs, inputs).")
-      .def("__repr__", [](const Predictor& p) {
-        return vn::message("<vernier.Predictor: ", p.learner, ", ", p.map->inputs(), " inputs, ", p.map->outputs(),
-                           " outputs, ", p.map->nodes(), " nodes>");
-      });
+      .def("__repr__",
+           [](const Predictor& p) {
+             return vn::message("<vernier.Predictor: ", p.learner, ", ", p.map->inputs(), " inputs, ", p.map->outputs(),
+                                " outputs, ", p.map->nodes(), " nodes>");
+           })
+      .def(py::pickle(&state_of, &predictor_of_state));
   module.def("_fit", &fit, py::arg("learner"), py::arg("options"), py::arg("X"), py::arg("Y"), py::arg("weights"),
              py::arg("seed"), py::arg("threads"), py::arg("progress"), "Fits the learner of a name.");
 }

@@ -3,7 +3,7 @@
 
 #include <pybind11/stl.h>
 
-#include <numeric>
+#include <set>
 
 #include "arrays.hpp"
 #include "bind.hpp"
@@ -61,9 +61,24 @@ std::vector<vn::Matrix6> covariances_of(const py::object& object) {
   return out;
 }
 
+/// Names of reflectors: texts or whole numbers.
+std::vector<std::string> points_of(const py::object& object, vn::Index n) {
+  std::vector<std::string> out;
+  vn::demand(!py::isinstance<py::str>(object) && py::isinstance<py::iterable>(object),
+             "points: a name or a number a row is expected");
+  for (const py::handle& item : object) {
+    vn::demand(py::isinstance<py::str>(item) || PyIndex_Check(item.ptr()), "points: row ", out.size(),
+               " is neither a name nor a whole number");
+    out.push_back(py::str(item));
+  }
+  vn::demand(static_cast<vn::Index>(out.size()) == n, "points: ", out.size(), " names of ", n, " rows");
+  return out;
+}
+
 Measurements of_arrays(const py::object& joints, const py::object& positions, const py::object& orientations,
                        const py::object& covariances, const py::object& times, const py::object& previous,
-                       const py::object& temperatures, const py::object& payloads, const std::string& name) {
+                       const py::object& temperatures, const py::object& payloads, const py::object& points,
+                       const std::string& name) {
   const Array q = numbers(joints, "joints");
   vn::demand(q.ndim() == 2 && q.shape(1) >= 1, "joints: an array of shape (n, joints) is expected");
   MeasuredPoses out;
@@ -76,6 +91,7 @@ Measurements of_arrays(const py::object& joints, const py::object& positions, co
   if (!previous.is_none()) out.previous = matrix_of(Rows(previous, "previous", q.shape(1), Values::any));
   if (!temperatures.is_none()) out.temperatures = vector_of(temperatures, "temperatures", n);
   if (!payloads.is_none()) out.payloads = matrix_of(Rows(payloads, "payloads", 4, Values::any));
+  if (!points.is_none()) out.points = points_of(points, n);
   out.name = name;
   support::validate(out);
   return {{{std::move(out)}, {}, {}}};
@@ -131,8 +147,9 @@ const MeasuredPoses& only_poses(const Measurements& m) {
   return m.data.stations.front();
 }
 
-Measurements rows_of(const Measurements& m, const std::vector<vn::Index>& rows) {
-  return {{{support::rows_of(only_poses(m), rows)}, {}, {}}};
+Measurements rows_of(const Measurements& m, const py::object& rows) {
+  const MeasuredPoses& poses = only_poses(m);
+  return {{{support::rows_of(poses, row_numbers(rows, "rows", poses.size()))}, {}, {}}};
 }
 
 void write(const Measurements& m, const py::object& path, const Robot& robot) {
@@ -144,9 +161,12 @@ void write(const Measurements& m, const py::object& path, const Robot& robot) {
 std::string shown(const Measurements& m) {
   std::string out = "<vernier.Measurements:";
   const auto part = [&](const std::string& text) { out += (out.back() == ':' ? " " : ", ") + text; };
-  for (const MeasuredPoses& poses : m.data.stations)
+  for (const MeasuredPoses& poses : m.data.stations) {
+    const std::set<std::string> points(poses.points.begin(), poses.points.end());
     part(vn::message(poses.size(), poses.orientations.rows() > 0 ? " poses" : " positions", " of ", poses.joints.cols(),
                      " joints"));
+    if (points.size() > 1) out += vn::message(" and ", points.size(), " reflectors");
+  }
   for (const MeasuredDistances& distances : m.data.distances) part(vn::message(distances.lengths.size(), " distances"));
   for (const vn::Contact& contact : m.data.contacts) part(vn::message(contact.size(), " touches of ", contact.name()));
   return out + ">";
@@ -180,7 +200,7 @@ py::tuple state_of(const Measurements& m) {
     stations.append(py::make_tuple(array_of(p.joints), array_of(vn::MatrixX(p.positions)),
                                    array_of(vn::MatrixX(p.orientations)), array_of(p.previous), array_of(p.times),
                                    array_of(p.temperatures), array_of(p.payloads), covariances_array(p),
-                                   state_of_origin(p.origin), p.name));
+                                   state_of_origin(p.origin), p.name, p.points));
   for (const MeasuredDistances& d : m.data.distances)
     distances.append(py::make_tuple(array_of(d.joints), array_of(d.lengths), state_of_origin(d.origin), d.name));
   for (const vn::Contact& c : m.data.contacts)
@@ -218,6 +238,7 @@ Measurements of_state(const py::tuple& state) {
     p.covariances = covariances_of(s[7]);
     p.origin = origin_of_state(s[8]);
     p.name = s[9].cast<std::string>();
+    p.points = s[10].cast<std::vector<std::string>>();
     support::validate(p);
     out.data.stations.push_back(std::move(p));
   }
@@ -244,14 +265,16 @@ void bind_measurements(py::module_& module) {
                            "[rad, m], positions in metres, rows in the order of measuring.")
       .def(py::init(&of_arrays), py::arg("joints"), py::arg("positions"), py::kw_only(), py::arg("orientations") = none,
            py::arg("covariances") = none, py::arg("times") = none, py::arg("previous") = none,
-           py::arg("temperatures") = none, py::arg("payloads") = none, py::arg("name") = "",
+           py::arg("temperatures") = none, py::arg("payloads") = none, py::arg("points") = none, py::arg("name") = "",
            "Poses from one station: joints (n, joints), positions (n, 3), orientations as rotation vectors (n, 3) or "
            "matrices (n, 3, 3), covariances (n, 3, 3) or (n, 6, 6). previous has the joint values from which each pose "
-           "was approached, NaN where unknown; without it, those of the row before.")
+           "was approached, NaN where unknown; without it, those of the row before. points names the reflector of each "
+           "row, where there are several.")
       .def_static("from_distances", &of_distances, py::arg("joints"), py::arg("lengths"), py::kw_only(),
                   py::arg("name") = "", "Distances of the tool point from one fixed point [m].")
       .def_static("read", &read, py::arg("path"), py::arg("robot"), py::kw_only(), py::arg("separator") = ",",
-                  py::arg("decimal") = ".", "Poses of a CSV file: columns q1_rad .., x_mm, y_mm, z_mm, rx_rad ..")
+                  py::arg("decimal") = ".",
+                  "Poses of a CSV file: columns q1_rad .., x_mm, y_mm, z_mm, rx_rad .., point ..")
       .def_static("read_distances", &read_distances, py::arg("path"), py::arg("robot"), py::kw_only(),
                   py::arg("separator") = ",", py::arg("decimal") = ".", "Distances of a CSV file.")
       .def_static("read_contacts", &read_contacts, py::arg("path"), py::arg("robot"), py::kw_only(),
@@ -270,6 +293,13 @@ void bind_measurements(py::module_& module) {
           },
           "Measured rotation vectors of one station (n, 3) [rad]; None where there are none.")
       .def_property_readonly(
+          "points",
+          [](const Measurements& m) -> py::object {
+            if (only_poses(m).points.empty()) return py::none();
+            return py::cast(only_poses(m).points);
+          },
+          "Names of the reflectors of one station's rows; None where all rows are of one.")
+      .def_property_readonly(
           "stations",
           [](const Measurements& m) {
             std::vector<Measurements> out;
@@ -277,7 +307,9 @@ void bind_measurements(py::module_& module) {
             return out;
           },
           "The poses of each station.")
-      .def("rows", &rows_of, py::arg("rows"), "The named rows of one station, in the given order.")
+      .def("rows", &rows_of, py::arg("rows"),
+           "The rows of one station whose numbers are given, in the given order; or those where an array of flags is "
+           "True.")
       .def("write", &write, py::arg("path"), py::arg("robot"), "Writes the poses of one station as `read` reads them.")
       .def("__add__", &joined, py::arg("other"), "Measurements of both, stations one behind the other.")
       .def("__len__", &size_of)

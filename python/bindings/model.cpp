@@ -111,13 +111,7 @@ py::object correct_path(const Model& model, const py::object& joints, const py::
   task.poses = targets.view();
   task.joints = near_to.view();
   const vn::Index n = by_poses ? targets.size() : near_to.size();
-  if (py::isinstance<py::bool_>(linear)) {
-    task.linear.assign(static_cast<std::size_t>(n), linear.cast<bool>());
-  } else if (!linear.is_none()) {
-    task.linear = linear.cast<std::vector<bool>>();
-    vn::demand(static_cast<vn::Index>(task.linear.size()) == n, "linear: ", task.linear.size(), " values for ", n,
-               " targets");
-  }
+  if (!linear.is_none()) task.linear = flags_of(linear, "linear", n);
   Rows from;
   if (!start.is_none()) {
     from = Rows(start, "start", model.arm->joints());
@@ -125,7 +119,13 @@ py::object correct_path(const Model& model, const py::object& joints, const py::
     task.start.assign(from.view().data, from.view().data + model.arm->joints());
   }
   support::PathRows path;
-  watched(progress, 1, 0, [&](const vn::FitOptions&) { path = model.arm->correct_path(task); });
+  watched(
+      progress, 1, 0,
+      [&](const vn::FitOptions& fit) {
+        task.observer = fit.observer;
+        path = model.arm->correct_path(task);
+      },
+      Steps::stated);
   Array commands({static_cast<py::ssize_t>(path.target.size()), static_cast<py::ssize_t>(model.arm->joints())},
                  path.commands.data());
   py::list status;
@@ -151,6 +151,7 @@ py::object verify(const Model& model, const Measurements& measured, bool base, b
   const support::MeasuredPoses& poses = measured.data.stations.front();
   vn::demand(poses.joints.cols() == model.arm->joints(), "verify: measurements of ", poses.joints.cols(), " joints, ",
              model.arm->name(), " has ", model.arm->joints());
+  vn::demand(!accept || *accept > 0, "accept is ", accept.value_or(0), ", must be positive");
   vn::VerifyOptions options{.base = base, .tool = tool, .level = level, .accept = accept};
   options.sensors.use_orientations = use_orientations;
   vn::VerificationReport report;
@@ -282,7 +283,8 @@ void bind_model(py::module_& module) {
            py::arg("linear") = none, py::arg("start") = none, py::arg("tolerance") = 0.05e-3,
            py::arg("max_joint_step") = 0.5, py::arg("approach") = true, py::arg("progress") = none,
            "Commands of a whole path: branches are chosen for all of it, points are inserted where a linear move would "
-           "leave its line.")
+           "leave its line. progress is called ten times a second with a Progress: generation counts targets that have "
+           "their command, evaluations those whose branches are known.")
       .def("covariance", &covariance, py::arg("q"), py::arg("previous") = none,
            "Covariances of the pose, shift [m] and rotation vector [rad]: (6, 6) or (n, 6, 6).")
       .def("verify", &verify, py::arg("measured"), py::kw_only(), py::arg("base") = true, py::arg("tool") = false,

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "watch.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <future>
 #include <thread>
 
+#include "arrays.hpp"
 #include "vernier/core/check.hpp"
 
 namespace python {
@@ -20,13 +22,14 @@ struct Interrupted {};
 /// What both threads share.
 class Watch {
  public:
-  explicit Watch(int threads) : threads_(threads) {}
+  Watch(int threads, Steps steps) : threads_(threads), steps_(steps) {}
 
   /// As an observer.
   bool operator()(const vn::Progress& progress) {
     const std::lock_guard lock(mutex_);
     latest_ = progress;
-    latest_.generation = ++generations_;
+    ++reports_;
+    if (steps_ == Steps::reports) latest_.generation = reports_;
     return !stopped_;
   }
   /// As an executor: work ends between two of its parts.
@@ -44,17 +47,18 @@ class Watch {
 
  private:
   vn::ThreadExecutor threads_;
+  Steps steps_;
   std::atomic<bool> stopped_ = false;
   mutable std::mutex mutex_{};
   vn::Progress latest_{};
-  vn::Index generations_ = 0;
+  vn::Index reports_ = 0;
 };
 
 }  // namespace
 
 void watched(const py::object& progress, int threads, std::uint64_t seed,
-             const std::function<void(const vn::FitOptions&)>& work) {
-  Watch watch(threads);
+             const std::function<void(const vn::FitOptions&)>& work, Steps steps) {
+  Watch watch(threads, steps);
   const auto poll = [&] {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (!progress.is_none()) progress(watch.latest());
@@ -88,7 +92,7 @@ void watched(const py::object& progress, int threads, std::uint64_t seed,
 
 int threads_of(const py::object& threads) {
   if (threads.is_none()) return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int out = threads.cast<int>();
+  const int out = static_cast<int>(std::min<vn::Index>(whole_number(threads, "threads"), 1 << 16));
   vn::demand(out >= 1, "threads is ", out, ", must be at least 1");
   return out;
 }

@@ -14,11 +14,11 @@ from ._vernier import (Correction, IkResult, Measurements, Model, Predictor, Pro
 from .errors import CalibrationFailure, DataError
 from .functions import export_c, verify
 from .learners import Elm, GaElm, GaussianProcess, KernelElm, PsoElm, RidgeElm, VarProElm
-from .results import Branches, CalibrationResult, CorrectedPath, Plan, Report, SearchResult, Verification
+from .results import Branches, CalibrationResult, CorrectedPath, Plan, Reflector, Report, SearchResult, Verification
 
 __all__ = ["Branches", "CalibrationFailure", "CalibrationResult", "CorrectedPath", "Correction", "DataError",
            "Elm", "GaElm", "GaussianProcess", "IkResult", "KernelElm", "Measurements", "Model", "Plan", "Predictor",
-           "Progress", "PsoElm", "Report", "RidgeElm", "Robot", "SearchResult", "VarProElm", "Verification", "__version__",
+           "Progress", "PsoElm", "Reflector", "Report", "RidgeElm", "Robot", "SearchResult", "VarProElm", "Verification", "__version__",
            "calibrate", "export_c", "load", "minimize", "plan", "simulate", "verify"]
 
 for _type in (Correction, IkResult, Measurements, Model, Predictor, Progress, Robot):

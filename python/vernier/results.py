@@ -44,6 +44,24 @@ class Report:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class Reflector:
+    """A reflector on the flange."""
+
+    position: Array
+    """In the frame of the flange [m]."""
+    std: Array
+    """Standard deviations of its position [m]; 0 where they were not estimated."""
+    poses: int
+    """Number of poses learned from."""
+    model: Model
+    """The calibrated arm whose tool is this reflector."""
+
+    def __repr__(self) -> str:
+        x, y, z = 1e3 * self.position
+        return f"<vernier.Reflector: at {x:.3f}, {y:.3f}, {z:.3f} mm, from {self.poses} poses>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class CalibrationResult:
     """A calibration, assessed on held-out poses."""
 
@@ -59,6 +77,8 @@ class CalibrationResult:
     """Their orientation errors [rad]; empty where orientations are not used."""
     train_poses: int
     test_poses: int
+    reflectors: Dict[str, Reflector]
+    """Each reflector, by the name of what measured it; empty where there is one alone, whose arm is `model`."""
 
     def _repr_html_(self) -> str:
         return self.report._repr_html_()

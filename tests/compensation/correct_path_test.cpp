@@ -138,6 +138,29 @@ TEST(CorrectPath, EachCommandIsForTheApproachFromTheOneBefore) {
   }
 }
 
+TEST(CorrectPath, AnObserverEndsAPath) {
+  const Model arm = arm_off(1);
+  PathOptions<6> options{.limits = robot.limits};
+  options.start = home;
+  const auto whole = correct_path(arm, closed_form, rectangle(arm), options);
+  Index looked_at = 0, commands = 0;
+  const auto until = [&](const Progress& progress) {
+    looked_at = progress.evaluations;
+    commands = progress.generation;
+    return commands < 2;
+  };
+  options.observer = until;
+  const auto stopped = correct_path(arm, closed_form, rectangle(arm), options);
+  EXPECT_EQ(looked_at, 5);
+  EXPECT_EQ(commands, 2);
+  ASSERT_LT(stopped.points.size(), whole.points.size());
+  EXPECT_EQ(stopped.points.back().target, 1);
+  EXPECT_EQ(stopped.points.back().command, whole.points[stopped.points.size() - 1].command);
+  const auto at_once = [](const Progress&) { return false; };
+  options.observer = at_once;
+  EXPECT_TRUE(correct_path(arm, closed_form, rectangle(arm), options).points.empty());
+}
+
 TEST(CorrectPath, ALineThroughAWristSingularityIsAJump) {
   const Model arm = arm_off(1);
   JointVector<6> near = home, far = home;

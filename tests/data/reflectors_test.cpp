@@ -116,6 +116,38 @@ TEST_F(Reflectors, AreRefusedWhereOneIsNeeded) {
   EXPECT_NE(said.find("several reflectors ('a', 'b', ..)"), std::string::npos) << said;
 }
 
+TEST_F(Reflectors, OfArraysAreThoseOfAFile) {
+  const auto of_file =
+      read("point,q1_rad,x_mm,y_mm,z_mm\n1,1,7,0,0\n2,1,8,0,0\n1,2,7,1,0\n2,2,8,1,0\n1,4,7,2,0\n2,4,8,2,0\n");
+  vn::JointRows<1> joints(6, 1);
+  joints << 1, 1, 2, 2, 4, 4;
+  vn::PointRows positions = vn::PointRows::Zero(6, 3);
+  positions.col(0) << 7e-3, 8e-3, 7e-3, 8e-3, 7e-3, 8e-3;
+  positions.col(1) << 0, 0, 1e-3, 1e-3, 2e-3, 2e-3;
+  const vn::Dataset<1> all(joints, positions);
+  const std::vector<std::string> points{"1", "2", "1", "2", "1", "2"};
+  const auto of_arrays = vn::split_reflectors(all, points);
+  ASSERT_EQ(of_arrays.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(of_arrays[k].point, of_file[k].point);
+    EXPECT_TRUE(of_arrays[k].poses.positions().isApprox(of_file[k].poses.positions(), 1e-15));
+    EXPECT_TRUE(of_arrays[k].poses.times() == of_file[k].poses.times());
+    EXPECT_TRUE(of_arrays[k].poses.previous().bottomRows(2) == of_file[k].poses.previous().bottomRows(2));
+  }
+  // again nothing changes: the second reflector was approached as the first was
+  EXPECT_DOUBLE_EQ(vn::approached_together(vn::approached_together(all, points), points).previous()(3, 0), 1);
+  EXPECT_EQ(vn::split_reflectors(all, {}).size(), 1u);
+  const auto complaint = [&](const vn::Dataset<1>& data, const std::vector<std::string>& names) {
+    return vernier_test::complaint([&] { (void)vn::split_reflectors(data, names); });
+  };
+  EXPECT_EQ(complaint(all, {"a"}), "reflectors: 1 names of 6 rows");
+  EXPECT_EQ(complaint(all, {"a", "b", "a", "b", "a", ""}), "reflectors: row 5 has no name of a reflector");
+  EXPECT_EQ(complaint(all, {"a", "a", "a", "a", "a", "b"}),
+            "reflectors: 'b' is measured at 1 pose, it needs three or more");
+  EXPECT_EQ(complaint(vn::Dataset<1>(joints, positions, vn::PointRows::Zero(6, 3)), points),
+            "reflectors: several have no orientations");
+}
+
 TEST_F(Reflectors, AreWrittenAndReadBack) {
   const auto before = read(
       "point,q1_rad,x_mm,y_mm,z_mm\nleft,1,10,0,0\nright,2,20,0,0\nleft,3,30,0,0\nright,4,40,0,0\nleft,5,50,0,0\n"
@@ -133,6 +165,18 @@ TEST_F(Reflectors, AreWrittenAndReadBack) {
   EXPECT_FALSE(vernier_test::complaint([&] {
                  vn::write_reflectors<1>(folder_ / "no.csv", {{"a,b", before[0].poses}});
                }).empty());
+  // and what else is known of the rows
+  std::vector<vn::ReflectorPoses<1>> known = before;
+  const std::vector<vn::Matrix6> covariances(3, 1e-8 * vn::Matrix6::Identity());
+  known[0].poses = before[0].poses.at_temperatures(vn::VectorX::Constant(3, 20)).with_covariances(covariances);
+  EXPECT_EQ(vernier_test::complaint([&] { vn::write_reflectors<1>(folder_ / "no.csv", known); }),
+            "write_reflectors: the temperatures of 1 reflectors of 2 are known");
+  known[1].poses = before[1].poses.at_temperatures(vn::VectorX::Constant(3, 25)).with_covariances(covariances);
+  vn::write_reflectors<1>(folder_ / "known.csv", known);
+  const auto again = vn::read_reflectors<1>(folder_ / "known.csv");
+  EXPECT_DOUBLE_EQ(again[1].poses.temperatures()(2), 25);
+  ASSERT_EQ(again[0].poses.covariances().size(), 3u);
+  EXPECT_NEAR(again[0].poses.covariances()[1](2, 2), 1e-8, 1e-20);
 }
 
 }  // namespace

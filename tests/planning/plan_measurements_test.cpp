@@ -101,6 +101,36 @@ TEST(PlanMeasurements, OfALargeRegionSomeCount) {
   EXPECT_EQ(difference(all, plan_measurements(chain, candidates, few_harmonics(10), {}, thirds).relative_error), 0);
 }
 
+// The choices until then are those of the whole plan; before the first there are none.
+TEST(PlanMeasurements, AnObserverEndsAPlan) {
+  const auto chain = robots::abb_irb120().chain;
+  const MeasurementCandidates<6> candidates = some_candidates(300, 6);
+  PlanOptions options = few_harmonics(20);
+  const auto whole = plan_measurements(chain, candidates, options);
+  Index most = 0, reports = 0;
+  const auto until = [&](const Progress& progress) {
+    EXPECT_GE(progress.generation, most);
+    most = progress.generation;
+    ++reports;
+    return progress.generation < 9;
+  };
+  options.observer = until;
+  const auto stopped = plan_measurements(chain, candidates, options);
+  EXPECT_EQ(stopped.chosen, (std::vector<Index>(whole.chosen.begin(), whole.chosen.begin() + 9)));
+  EXPECT_EQ(stopped.log_det.size(), 10);
+  EXPECT_EQ(stopped.log_det(9), whole.log_det(9));
+  EXPECT_EQ(stopped.relative_error(9), 1);
+  EXPECT_EQ(stopped.joints.rows(), 9);
+  EXPECT_EQ(stopped.visits.size(), 10u);  // the first one again at the end
+  EXPECT_GT(reports, 9 + 300 / 64);       // rows of the candidates, too
+  const auto at_once = [](const Progress&) { return false; };
+  options.observer = at_once;
+  EXPECT_TRUE(plan_measurements(chain, candidates, options).chosen.empty());
+  const auto all = [&](const Progress&) { return true; };
+  options.observer = all;
+  EXPECT_EQ(plan_measurements(chain, candidates, options).visits, whole.visits);
+}
+
 TEST(PlanMeasurements, WhatWasMeasuredIsNotMeasuredAgain) {
   MeasurementCandidates<6> candidates = some_candidates(60, 6);
   const auto chain = robots::abb_irb120().chain;

@@ -46,6 +46,10 @@ TEST(SampleCandidates, ObeyTheirConstraints) {
     EXPECT_GT(found.rejected[static_cast<std::size_t>(r)], 0) << name_of(r);
   EXPECT_EQ(found.rejected[static_cast<std::size_t>(Rejection::self_collision)], 0);
 
+  const auto until = [](const Progress& progress) { return progress.evaluations < 50; };
+  const auto first = sample_candidates(robot.chain, robot.limits, constraints, 200, 3, until);
+  EXPECT_EQ(difference(first.joints, JointRows<6>(found.joints.topRows(50))), 0);
+
   constraints.tool_box = ToolBox{{10, 10, 10}, {11, 11, 11}};
   const std::string said =
       vernier_test::complaint([&] { (void)sample_candidates(robot.chain, robot.limits, constraints, 200, 3); });

@@ -51,6 +51,12 @@ def test_results_own_their_memory(robot, joints):
     assert poses.flags.owndata and poses.flags.writeable and np.array_equal(poses, kept)
 
 
+def test_masked_arrays_are_refused(robot, joints):
+    with pytest.raises(ValueError, match="q: a masked array is not read"):
+        robot.fk(np.ma.masked_greater(joints, 1))
+    assert np.array_equal(robot.fk(joints.view(np.matrix)), robot.fk(joints))
+
+
 def test_no_rows(robot):
     assert robot.fk(np.zeros((0, 6))).shape == (0, 4, 4)
     assert robot.jacobian(np.zeros((0, 6))).shape == (0, 6, 6)
@@ -72,6 +78,6 @@ def test_memory_stays(robot, joints, model):
     calls(200)
     gc.collect()
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    calls(2000)
+    calls(2000)  # five calls each
     gc.collect()
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 4096  # kB

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Calibrations: the figures of the program, models that keep their bits, and what interrupts and refuses."""
 import ctypes
+import json
 import multiprocessing
 import os
 import pickle
@@ -23,7 +24,6 @@ def test_it_is_the_calibration_of_the_program(programs, source, result, tmp_path
     saved = vernier.load(tmp_path / "model.json")
     assert np.array_equal(saved.fk(joints), model.fk(joints))
     assert np.array_equal(saved.correct(joints).command, model.correct(joints).command)
-    import json
     theirs = json.loads((tmp_path / "results.json").read_text())
     assert theirs["chosen"] == result.chosen
     assert list(theirs["stages"]) == list(result.stages)
@@ -72,7 +72,7 @@ def test_held_out_measurements_and_shares(robot, measured):
     assert by_hand.test_poses == 60
     share = vernier.calibrate(robot, measured, test=0.25, seed=3, **few)
     assert 60 <= share.test_poses <= 90
-    for wrong in (1, 0.0, 1.5, "five"):
+    for wrong in (1, 0.0, 1.5, "five", None):
         with pytest.raises(ValueError, match="test"):
             vernier.calibrate(robot, measured, test=wrong)
 
@@ -120,8 +120,10 @@ def test_paths(model):
     np.testing.assert_allclose(model.fk(path.commands[ends])[:, :3, 3], model.nominal_fk(q)[:, :3, 3], atol=3e-4)
     by_pose = model.correct_path(poses=model.nominal_fk(q), start=q[0])
     np.testing.assert_allclose(by_pose.commands, model.correct_path(q, start=q[0]).commands, atol=1e-9)
-    with pytest.raises(ValueError, match="linear: 2 values for 3 targets"):
+    with pytest.raises(ValueError, match="linear: 2 values of 3 rows"):
         model.correct_path(q, linear=[True, False])
+    with pytest.raises(ValueError, match="linear: True, False, or one of them a row"):
+        model.correct_path(q, linear="yes")
     with pytest.raises(ValueError, match="joints, poses or both"):
         model.correct_path()
 
@@ -149,6 +151,9 @@ def test_measurements(source, robot, measured, tmp_path):
     again = vernier.Measurements.read(tmp_path / "again.csv", robot)
     assert np.array_equal(again.joints, measured.joints)
     np.testing.assert_allclose(again.positions, measured.positions, atol=1e-12)
+    flags = np.arange(300) % 5 == 0
+    assert np.array_equal(measured.rows(flags).joints, measured.joints[flags])
+    assert np.array_equal(measured.rows([7, 3]).joints, measured.joints[[7, 3]])
     both = measured + vernier.Measurements.from_distances(measured.joints, np.ones(300))
     assert len(both) == 600 and len(both.stations) == 1 and "300 distances" in repr(both)
     covariances = np.tile(np.eye(6) * 1e-10, (300, 1, 1))
@@ -171,7 +176,9 @@ def test_refusals_of_measurements(measured, robot, tmp_path):
                         (lambda: vernier.Measurements(q, p, covariances=np.zeros((300, 3, 3))), "positive definite"),
                         (lambda: vernier.Measurements(q, p, orientations=np.zeros((300, 3, 3))), "no rotation"),
                         (lambda: vernier.Measurements.from_distances(q, -np.ones(300)), "lengths: row 0"),
-                        (lambda: measured.rows([300]), "row 300 of 300")]:
+                        (lambda: measured.rows([300]), "row 300 of 300"),
+                        (lambda: measured.rows([0.5]), "rows: an array of whole numbers is expected"),
+                        (lambda: measured.rows([True, False]), "rows: 2 values of 300 rows")]:
         with pytest.raises(ValueError, match=words):
             call()
     with pytest.raises(ValueError, match="measurements of 5 joints"):
@@ -206,6 +213,33 @@ def test_progress_is_called_and_may_end_it(robot, measured):
     with pytest.raises(Enough, match="no more"):
         vernier.calibrate(robot, measured, progress=stop)
     assert threading.active_count() == before
+
+
+def test_observers_end_plans_paths_and_simulations(robot, model, joints):
+    """An exception of the observer arrives long before the work would be done, and no thread is left."""
+    class Enough(Exception):
+        pass
+
+    def stop(progress):
+        raise Enough
+
+    many = np.tile(joints, (500, 1))
+    before = threading.active_count()
+    for work in (lambda: vernier.plan(robot, 1000, candidates=20000, progress=stop),
+                 lambda: model.correct_path(many, progress=stop), lambda: vernier.simulate(robot, many, progress=stop)):
+        began = time.monotonic()
+        with pytest.raises(Enough):
+            work()
+        assert time.monotonic() - began < 1.5  # 0.1 s to the first call, on a machine that does other work as well
+    assert threading.active_count() == before
+
+
+def test_progress_of_plans_and_paths(robot, model, joints):
+    calls = []
+    path = model.correct_path(joints, progress=calls.append)
+    assert len(path) == len(joints) and calls[-1].generation == len(joints) - 1
+    vernier.plan(robot, 20, candidates=200, progress=calls.append)
+    assert calls[-1].generation == 20
 
 
 def test_control_c(source):
@@ -253,6 +287,58 @@ def test_two_stations(robot, measured):
     assert fitted.stages[fitted.chosen].mean() < 0.1e-3
 
 
+@pytest.fixture(scope="module")
+def reflectors(robot):
+    """Three reflectors, each measured at every pose."""
+    lower, upper = robot.limits.T
+    poses = np.random.default_rng(5).uniform(0.8 * lower, 0.8 * upper, (60, 6))
+    return vernier.simulate(robot, poses, seed=4, points=3)
+
+
+def test_several_reflectors_are_those_of_the_program(programs, robot, reflectors, tmp_path):
+    reflectors.write(tmp_path / "three.csv", robot)
+    programs("calibrate", "--robot", "abb_irb120", "--data", tmp_path / "three.csv", "--test-every", 5, "--save",
+             tmp_path / "model.json", "--json", tmp_path / "results.json", "--out", tmp_path)
+    theirs = json.loads((tmp_path / "results.json").read_text())
+    read = vernier.Measurements.read(tmp_path / "three.csv", robot)
+    assert read.points == reflectors.points and "3 reflectors" in repr(read)
+    result = vernier.calibrate(robot, read, test=5)
+    assert {key: errors.mean() * 1e3 for key, errors in result.stages.items()} == \
+        pytest.approx({key: stage["mean_mm"] for key, stage in theirs["stages"].items()}, rel=1e-12)
+    q = reflectors.joints[:30]
+    for k, (name, one) in enumerate(result.reflectors.items()):
+        saved = vernier.load(tmp_path / ("model.json" if k == 0 else f"model.{k + 1}.json"))
+        assert name == theirs["reflectors"][k]["measured"] and repr(one).startswith("<vernier.Reflector: at ")
+        assert np.array_equal(saved.correct(q).command, one.model.correct(q).command)
+        np.testing.assert_allclose(one.position * 1e3, theirs["reflectors"][k]["offset_mm"], atol=1e-9)
+    assert len(result.reflectors) == 3
+    assert np.array_equal(result.model.fk(q), next(iter(result.reflectors.values())).model.fk(q))
+
+
+def test_reflectors_of_arrays(robot, reflectors):
+    by_hand = vernier.Measurements(reflectors.joints, reflectors.positions, points=[int(p) for p in reflectors.points])
+    assert by_hand.points == reflectors.points == ["1", "2", "3"] * 60
+    again = pickle.loads(pickle.dumps(by_hand))
+    held_out = np.arange(180) % 15 < 3  # every fifth pose
+    few = dict(learners=[])
+    result = vernier.calibrate(robot, again.rows(np.flatnonzero(~held_out)), test=by_hand.rows(np.flatnonzero(held_out)),
+                               **few)
+    assert (result.train_poses, result.test_poses) == (144, 36)
+    assert list(result.reflectors) == [f"station 1, point {k}" for k in "123"]
+    assert result.stages[result.chosen].mean() < 0.1e-3
+    for call, words in [(lambda: vernier.Measurements(reflectors.joints, reflectors.positions, points=["a"]), "1 names of 180"),
+                        (lambda: vernier.Measurements(reflectors.joints, reflectors.positions, points="a" * 180),
+                         "a name or a number a row"),
+                        (lambda: vernier.Measurements(reflectors.joints, reflectors.positions, points=[0.5] * 180),
+                         "row 0 is neither"),
+                        (lambda: vernier.Measurements(reflectors.joints, reflectors.positions, points=["a"] * 179 + ["b"]),
+                         "'b' is measured at 1 pose"),
+                        (lambda: vernier.Measurements(reflectors.joints, reflectors.positions, points=reflectors.points,
+                                                      orientations=reflectors.positions), "no orientations")]:
+        with pytest.raises(ValueError, match=words):
+            call()
+
+
 def test_verify(programs, source, model, robot):
     fresh = vernier.Measurements.read(source / "examples/data/fresh.csv", robot)
     check = vernier.verify(model, fresh)
@@ -294,5 +380,7 @@ def test_plan_and_simulate(robot):
     quiet = vernier.simulate(robot, plan.path, seed=4, position_noise=0, orientation_noise=0)
     noise = data.positions - quiet.positions
     assert 0.015e-3 < noise.std() < 0.06e-3
+    with pytest.raises(ValueError, match="link_radius -1"):
+        vernier.plan(robot, 10, link_radius=-1)
     with pytest.raises(ValueError, match="box"):
         vernier.plan(robot, 10, box=[0, 1, 2])

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Learners against formulas of NumPy."""
+import multiprocessing
+import pickle
+
 import numpy as np
 import pytest
 
@@ -35,6 +38,24 @@ def test_any_number_of_columns(recipe, inputs, outputs):
         step = h * np.eye(inputs)[k]
         difference = (predictor.predict(x[5:6] + step) - predictor.predict(x[5:6] - step))[0] / (2 * h)
         np.testing.assert_allclose(slope[:, k], difference, atol=1e-4 * max(1, np.abs(difference).max()))
+
+
+def predictions(predictor, x):
+    """In another process."""
+    return predictor.predict(x), repr(predictor)
+
+
+def test_pickles_keep_their_bits():
+    x, y = samples(3, 2)
+    predictors = [recipe.fit(x, y, seed=2) for recipe in RECIPES] + [vernier.RidgeElm().fit(x, y[:, 0])]
+    here = [predictions(predictor, x) for predictor in predictors]
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        there = pool.starmap(predictions, [(predictor, x) for predictor in predictors])
+    for (values, text), (others, other_text) in zip(here, there):
+        assert np.array_equal(values, others) and text == other_text
+    process = pickle.loads(pickle.dumps(predictors[6]))
+    assert np.array_equal(process.standard_deviation(x), predictors[6].standard_deviation(x))
+    assert np.array_equal(process.derivative(x[0]), predictors[6].derivative(x[0]))
 
 
 def test_vectors():
@@ -79,6 +100,10 @@ def test_refusals():
         vernier.RidgeElm().fit(x, y).standard_deviation(x)
     with pytest.raises(ValueError, match="activation: 'relu'"):
         vernier.RidgeElm(activation="relu").fit(x, y)
+    for nodes, words in [("a", "hidden_nodes: 'a' cannot be used"), (2.5, "2.5 cannot"), (-1, "is -1, must be at least 1")]:
+        for recipe in (vernier.RidgeElm, vernier.PsoElm, Elm):
+            with pytest.raises(ValueError, match=words):
+                recipe(hidden_nodes=nodes).fit(x, y)
     with pytest.raises(TypeError):
         vernier.RidgeElm(nodes=3)
 

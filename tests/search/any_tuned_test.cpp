@@ -43,11 +43,18 @@ void expect_same_bits(const Recipe& recipe, bool weighted) {
   EXPECT_EQ(any.predict(samples.x), MatrixX(fixed.predict(samples.x)));
   EXPECT_EQ(any.derivative(samples.x.row(7).transpose()), MatrixX(fixed.derivative(Vector3(samples.x.row(7)))));
   EXPECT_THROW(any.predict(MatrixX::Zero(4, 2)), std::invalid_argument);
+  PredictorParts parts = any.parts();
+  const AnyPredictor again(parts);
+  EXPECT_EQ(again.predict(samples.x), any.predict(samples.x));
+  EXPECT_EQ(again.nodes(), any.nodes());
   if constexpr (requires { fixed.standard_deviation(Vector3()); }) {
     ASSERT_TRUE(any.uncertain());
     const MatrixX deviations = any.standard_deviations(samples.x);
     for (Index i = 0; i < samples.x.rows(); ++i)
       EXPECT_EQ(VectorX(deviations.row(i)), VectorX(fixed.standard_deviation(Vector3(samples.x.row(i)))));
+    EXPECT_EQ(again.standard_deviations(samples.x), deviations);
+    parts.spread->inverse.pop_back();
+    EXPECT_THROW(AnyPredictor{parts}, std::invalid_argument);
   } else {
     EXPECT_THROW(any.standard_deviations(samples.x), std::invalid_argument);
   }
@@ -70,7 +77,18 @@ TEST(AnyTuned, HybridsHaveTheBitsOfFixedSizes) {
 
 TEST(AnyTuned, RefusesUnusableSamples) {
   EXPECT_THROW(fit_any(Elm{}, MatrixX::Zero(3, 2), MatrixX::Zero(4, 1)), std::invalid_argument);
-  EXPECT_THROW(fit_any(Elm{.hidden_nodes = 0}, MatrixX::Zero(3, 2), MatrixX::Zero(3, 1)), std::invalid_argument);
+  for (const int nodes : {0, -1}) {
+    EXPECT_THROW(fit_any(Elm{.hidden_nodes = nodes}, MatrixX::Zero(3, 2), MatrixX::Zero(3, 1)), std::invalid_argument);
+    EXPECT_THROW(fit_any(RidgeElm{.hidden_nodes = nodes}, MatrixX::Zero(3, 2), MatrixX::Zero(3, 1)),
+                 std::invalid_argument);
+    EXPECT_THROW(fit_any(Tuned{Elm{.hidden_nodes = nodes}, Pso{}}, MatrixX::Zero(3, 2), MatrixX::Zero(3, 1)),
+                 std::invalid_argument);
+  }
+  PredictorParts parts = fit_any(Elm{.hidden_nodes = 4}, MatrixX::Random(9, 2), MatrixX::Random(9, 1)).parts();
+  parts.nodes.conservativeResize(parts.nodes.size() - 1);
+  EXPECT_THROW(AnyPredictor{parts}, std::invalid_argument);
+  parts.node_function = 17;
+  EXPECT_THROW(AnyPredictor{parts}, std::invalid_argument);
   const Tuned part{Elm{}, Pso{}, {}, 2};
   EXPECT_THROW(fit_any(part, MatrixX::Zero(3, 2), MatrixX::Zero(3, 1)), std::invalid_argument);
 }

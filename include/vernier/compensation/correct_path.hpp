@@ -44,6 +44,9 @@ struct PathOptions {
   /// Where the arm is before it moves to the first target [rad, m]; not finite where unknown. That move is no linear
   /// one.
   JointVector<N> start = JointVector<N>::Constant(std::numeric_limits<double>::quiet_NaN());
+  /// Who watches; must outlive the call. Told before each target's branches are looked for (`Progress::evaluations` of
+  /// targets), and before its command (`Progress::generation`). A stop ends the path: it has the points until there.
+  ObserverRef observer{};
 };
 
 /// A corrected command of a path.
@@ -179,10 +182,11 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   for (const PathTarget<N>& target : targets)
     goals.push_back(
         {target.pose, detail::all_finite(target.joints) ? PathJoints(target.joints) : PathJoints(), target.motion});
-  const SolvedPath solved = solve_path(
-      {N, find_branches, correct, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
-      {options.tolerance, N >= 6 ? options.rotation_tolerance : std::numeric_limits<double>::infinity(),
-       options.max_joint_step, options.max_inserted, options.limits.lower, options.limits.upper, options.start});
+  const SolvedPath solved =
+      solve_path({N, find_branches, correct, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
+                 {options.tolerance, N >= 6 ? options.rotation_tolerance : std::numeric_limits<double>::infinity(),
+                  options.max_joint_step, options.max_inserted, options.limits.lower, options.limits.upper,
+                  options.start, options.observer});
   CorrectedPath<N> out;
   out.before = solved.before;
   out.after = solved.after;
@@ -223,8 +227,8 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
 /// @param closed_form of the nominal arm in the same frames, or `GeneralSixAxis`
 /// @param targets     in the frames of the model
 /// @param options     tolerances, limits, start
-/// @return            points in order; what cannot be met as asked has a status that says so, and no move jumps
-/// silently
+/// @return            points in order, fewer where the observer stopped it; what cannot be met as asked has a status
+/// that says so, and no move jumps silently
 /// @throws std::invalid_argument for options that are not positive
 /// @complexity        O(targets)
 template <KinematicModel Arm, BranchRoots Roots>

@@ -202,18 +202,6 @@ VERNIER_LOCAL bool names_reflectors(const CsvTable& table, const std::vector<std
   return true;
 }
 
-/// Points that are measured one after another at one pose were approached from the same one.
-/// @param poses number of each row's pose
-VERNIER_LOCAL void share_approach(PoseColumns& out, const std::vector<Index>& poses, int joints) {
-  for (Index i = 1; i < out.values.rows(); ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    bool same = out.points[row] != out.points[row - 1] && poses[row] == poses[row - 1];
-    for (Index j = 0; j < joints && same; ++j)
-      same = !std::isfinite(out.previous(i, j)) || same_value(out.previous(i, j), out.values(i - 1, j));
-    for (Index j = 0; j < joints && same; ++j) out.previous(i, j) = out.previous(i - 1, j);
-  }
-}
-
 VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, std::span<const JointType> types,
                                            const CsvFormat& format) {
   const CsvTable table(path, format);
@@ -252,10 +240,7 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
       out.values(i, k) = k < joints ? of_rows(i, k) : poses.values(i, k - joints);
   if (!out.points.empty()) {
     const std::vector<Index> numbers = pose_numbers(of_rows, {.joint_types = types});
-    if (names_reflectors(table, out.points, numbers, values > 3))
-      share_approach(out, numbers, joints);
-    else
-      out.points.clear();
+    if (!names_reflectors(table, out.points, numbers, values > 3)) out.points.clear();
   }
   table.remark_unread();
   return out;

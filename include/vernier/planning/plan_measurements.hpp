@@ -33,6 +33,10 @@ struct PlanOptions {
   Index check_every = 20;                    ///< number of poses after which the first one is repeated
   VectorX speeds{};                          ///< of the joints, see `visiting_order`
   int bound_iterations = 0;                  ///< of `information_bound`; 0: no bound
+  /// Who watches; must outlive the call. Told after each choice (`Progress::generation` of them, `best`: information
+  /// [nat]), and many times before and between. A stop ends the plan with what was chosen until then, which may be
+  /// none.
+  ObserverRef observer{};
 };
 
 /// Candidates of a plan: configurations, and from where each is approached.
@@ -51,7 +55,9 @@ struct UncoveredBin {
 
 /// What `plan_measurements` found, whatever the number of joints.
 struct PlannedMeasurements {
-  std::vector<Index> chosen{};  ///< candidates, in the order of choice: the first ones alone are the plan of fewer
+  /// Candidates, in the order of choice: the first ones alone are the plan of fewer. Fewer than asked for where the
+  /// observer stopped it.
+  std::vector<Index> chosen{};
   /// Visits, as positions in `chosen`: first three that register the sensor's frame, then a short path through the
   /// rest; the first visit is repeated now and then to see drift.
   std::vector<Index> visits{};
@@ -87,7 +93,7 @@ VERNIER_API PlannedMeasurements plan_measurements(const ArmGeometry& nominal, co
                                                   const PlanOptions& options);
 /// Configurations within limits that a scene admits, uniform, and what became of the others.
 VERNIER_API MatrixX admitted_joints(const MeasurementScene& scene, const VectorX& lower, const VectorX& upper, Index n,
-                                    std::uint64_t seed, RejectionCounts& rejected);
+                                    std::uint64_t seed, RejectionCounts& rejected, const ObserverRef& observer);
 
 }  // namespace detail
 
@@ -98,18 +104,20 @@ VERNIER_API MatrixX admitted_joints(const MeasurementScene& scene, const VectorX
 /// @param constraints their joint limits are replaced by `limits`
 /// @param n           number of candidates
 /// @param seed        same seed, same candidates
+/// @param observer    told of the candidates so far (`Progress::evaluations`), many times; a stop leaves these
 /// @throws std::invalid_argument for unbounded limits, or where fewer than one in a thousand is admitted, with the most
 ///         frequent reason
 template <NominalArm Arm>
 MeasurementCandidates<Arm::dof> sample_candidates(const Arm& arm, const JointLimits<Arm::dof>& limits,
-                                                  MeasurementConstraints constraints, Index n, std::uint64_t seed) {
+                                                  MeasurementConstraints constraints, Index n, std::uint64_t seed,
+                                                  const ObserverRef& observer = {}) {
   constraints.lower = limits.lower;
   constraints.upper = limits.upper;
   MeasurementCandidates<Arm::dof> out;
   out.joints = detail::admitted_joints(MeasurementScene(ArmGeometry(in_frames(arm)), constraints), limits.lower,
-                                       limits.upper, n, seed, out.rejected);
+                                       limits.upper, n, seed, out.rejected, observer);
   out.previous = out.joints;
-  for (Index i = 1; i < n; ++i)
+  for (Index i = 1; i < out.joints.rows(); ++i)
     for (Index j = 0; j < Arm::dof; ++j) out.previous(i, j) = out.joints(i - 1, j);
   return out;
 }

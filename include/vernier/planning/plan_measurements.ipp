@@ -95,9 +95,37 @@ VERNIER_LOCAL std::vector<Index> planned_visits(const MatrixX& joints, const Poi
   std::vector<Index> rows = first;
   for (Index i = 0; i < joints.rows(); ++i)
     if (std::find(first.begin(), first.end(), i) == first.end()) rows.push_back(i);
-  std::vector<Index> order = visiting_order(rows_of(joints, rows), options.speeds, fixed);
+  const auto sweeps = [&](const Progress&) { return options.observer({joints.rows(), 0, 0}); };
+  std::vector<Index> order = visiting_order(rows_of(joints, rows), options.speeds, fixed, sweeps);
   for (Index& visit : order) visit = rows[static_cast<std::size_t>(visit)];
   return with_check_visits(order, options.check_every);
+}
+
+/// What candidates, measurements of before and the region tell about the unknowns.
+struct PlanRows {
+  CandidateRows candidates;
+  MatrixX measured, region;
+};
+
+/// @throws PlanningStopped where the observer requests a stop
+VERNIER_LOCAL PlanRows plan_rows(const ArmGeometry& nominal, const PlanInput& input, const PlanOptions& options) {
+  const PlannedCalibration planned{nominal,         options.geometry, options.errors,
+                                   options.sensors, options.oriented, options.count + input.measured.rows()};
+  PlanRows out{expected_candidate_rows(planned, input.candidates, input.candidates_previous, options.observer),
+               MatrixX(), MatrixX()};
+  out.measured.resize(0, out.candidates.unknowns());
+  if (input.measured.rows() > 0)
+    out.measured = expected_rows(planned, input.measured, input.measured_previous, options.observer);
+
+  constexpr Index region_points = 150;
+  const MatrixX& of_region = input.region.rows() > 0 ? input.region : input.candidates;
+  const Index stride = std::max<Index>(1, of_region.rows() / region_points);
+  std::vector<Index> some;
+  for (Index i = 0; i < of_region.rows(); i += stride) some.push_back(i);
+  PlannedCalibration positions = planned;
+  positions.oriented = false;
+  out.region = options.sensors.position_sigma * expected_rows(positions, rows_of(of_region, some), MatrixX());
+  return out;
 }
 
 VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, const PlanInput& input,
@@ -114,23 +142,15 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   demand(options.bin > 0, "plan_measurements: bin is ", options.bin, ", must be positive");
   demand(options.criterion != DesignCriterion::region_variance || input.region.rows() > 0,
          "plan_measurements: no region whose variance could be reduced");
-  const PlannedCalibration planned{nominal,         options.geometry, options.errors,
-                                   options.sensors, options.oriented, options.count + input.measured.rows()};
-  const CandidateRows rows = expected_candidate_rows(planned, input.candidates, input.candidates_previous);
-  MatrixX measured(0, rows.unknowns());
-  if (input.measured.rows() > 0) measured = expected_rows(planned, input.measured, input.measured_previous);
-
-  constexpr Index region_points = 150;
-  const MatrixX& of_region = input.region.rows() > 0 ? input.region : input.candidates;
-  const Index stride = std::max<Index>(1, of_region.rows() / region_points);
-  std::vector<Index> some;
-  for (Index i = 0; i < of_region.rows(); i += stride) some.push_back(i);
-  PlannedCalibration positions = planned;
-  positions.oriented = false;
-  const MatrixX region = options.sensors.position_sigma * expected_rows(positions, rows_of(of_region, some), MatrixX());
+  PlanRows rows;
+  try {
+    rows = plan_rows(nominal, input, options);
+  } catch (const PlanningStopped&) {
+    return {};
+  }
 
   const JointBins bins(input.candidates, options.bin);
-  PoseDesignOptions design{.count = options.count, .criterion = options.criterion};
+  PoseDesignOptions design{.count = options.count, .criterion = options.criterion, .observer = options.observer};
   const Eigen::MatrixXi bins_of = bins.of_rows(input.candidates);
   Eigen::VectorXi wanted = Eigen::VectorXi::Zero(bins.size());
   for (Index c = 0; c < bins_of.size(); ++c) wanted(bins_of.data()[c]) = (std::max)(1, options.bin_count);
@@ -138,17 +158,18 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
   for (Index c = 0; c < bins_measured.size(); ++c)
     if (const int bin = bins_measured.data()[c]; bin >= 0) wanted(bin) = (std::max)(0, wanted(bin) - 1);
   if (options.bin_count > 0) design.coverage = {bins_of, wanted};
-  const PoseDesign found = design_poses(rows, design, measured, region);
+  const PoseDesign found = design_poses(rows.candidates, design, rows.measured, rows.region);
 
   PlannedMeasurements out;
   out.chosen = found.chosen;
-  out.unknowns = rows.unknowns();
+  out.unknowns = rows.candidates.unknowns();
   out.log_det = found.log_det;
-  const VectorX relative = found.region_variance / found.region_variance(options.count);
+  if (out.chosen.empty()) return out;
+  const VectorX relative = found.region_variance / found.region_variance(static_cast<Index>(out.chosen.size()));
   out.relative_error = VERNIER_LATER(relative).cwiseSqrt();
-  if (options.bound_iterations > 0 && measured.rows() == 0)
-    out.bound = information_bound(VERNIER_LATER(rows.columns(0, n)).transpose(), rows.block, options.count,
-                                  options.bound_iterations);
+  if (options.bound_iterations > 0 && rows.measured.rows() == 0)
+    out.bound = information_bound(VERNIER_LATER(rows.candidates.columns(0, n)).transpose(), rows.candidates.block,
+                                  options.count, options.bound_iterations);
   for (const Index c : out.chosen)
     for (Index j = 0; j < bins_of.cols(); ++j) wanted(bins_of(c, j)) = 0;
   if (options.bin_count > 0) wanted = found.missing;
@@ -160,7 +181,7 @@ VERNIER_IMPL PlannedMeasurements plan_measurements(const ArmGeometry& nominal, c
 }
 
 VERNIER_IMPL MatrixX admitted_joints(const MeasurementScene& scene, const VectorX& lower, const VectorX& upper, Index n,
-                                     std::uint64_t seed, RejectionCounts& rejected) {
+                                     std::uint64_t seed, RejectionCounts& rejected, const ObserverRef& observer) {
   demand(n >= 1, "sample_candidates: ", n, " candidates requested");
   bool usable = all_finite(lower) && all_finite(upper);
   const Index joints = scene.controller().joints(static_cast<int>(lower.size()));
@@ -171,6 +192,10 @@ VERNIER_IMPL MatrixX admitted_joints(const MeasurementScene& scene, const Vector
   constexpr Index attempts = 1000;
   Index tried = 0;
   for (Index i = 0; i < n;) {
+    if (!observer({0, i, 0})) {
+      rejected[0] = 0;
+      return VERNIER_LATER(out).topRows(i);
+    }
     for (Index j = 0; j < joints; ++j) shown(0, j) = rng.uniform(lower(j), upper(j));
     const MatrixX drawn = scene.controller().to_chain(shown);
     for (Index j = 0; j < lower.size(); ++j) out(i, j) = drawn(0, j);

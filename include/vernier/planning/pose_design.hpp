@@ -28,11 +28,14 @@ struct PoseDesignOptions {
   Index count = 0;                                           ///< number of candidates to choose
   DesignCriterion criterion = DesignCriterion::information;  ///< what a choice improves
   BinCoverage coverage{};  ///< covered first: a candidate that covers more missing bins comes before a better one
+  /// Who watches; must outlive the call. Told after each choice, and between while many candidates are looked at. A
+  /// stop ends the design with what was chosen until then.
+  ObserverRef observer{};
 };
 
 /// Chosen candidates, and what they are worth.
 struct PoseDesign {
-  std::vector<Index> chosen{};  ///< in the order of choice
+  std::vector<Index> chosen{};  ///< in the order of choice; fewer than asked for where the observer stopped it
   VectorX log_det{};            ///< `log det(I + sum A'A)` after 0, 1, .. choices, relative to the start [nat]
   VectorX region_variance{};    ///< mean variance over the blocks of the region, likewise; empty without a region
   Eigen::VectorXi missing{};    ///< candidates that bins lack at the end

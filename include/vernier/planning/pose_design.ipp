@@ -45,6 +45,7 @@ class GrowingDesign {
       : rows_(rows),
         region_(std::move(region)),
         block_(rows.block),
+        observer_(options.observer),
         covariance_(MatrixX::Identity(rows.unknowns(), rows.unknowns())),
         directions_(rows.unknowns(), kept * block_),
         of_region_(region_.cols(), kept * block_),
@@ -62,14 +63,16 @@ class GrowingDesign {
     region_variance_ = squared_column_norms(region_then);
     const bool by_region = options.criterion == DesignCriterion::region_variance;
     if (by_region) to_region_ = MatrixX::Zero(region_.cols(), rows.dense.cols());
-    in_parts([&](Index first, Index count) {
-      MatrixX columns = rows_.columns(first, count);
-      if (factor.size() > 0) solve_lower(factor, columns);
-      for (Index c = 0; c < count; ++c) add_to_variance(first + c, squared_in(columns, c), 1);
-      if (by_region)
-        add_transposed_product(VERNIER_LATER(to_region_).middleCols(first * block_, count * block_), region_then,
-                               columns);
-    });
+    in_parts(
+        [&](Index first, Index count) {
+          MatrixX columns = rows_.columns(first, count);
+          if (factor.size() > 0) solve_lower(factor, columns);
+          for (Index c = 0; c < count; ++c) add_to_variance(first + c, squared_in(columns, c), 1);
+          if (by_region)
+            add_transposed_product(VERNIER_LATER(to_region_).middleCols(first * block_, count * block_), region_then,
+                                   columns);
+        },
+        factor.size() > 0 ? part / 8 : part);  // a solution takes longest
   }
 
   /// Number of candidates.
@@ -127,6 +130,7 @@ class GrowingDesign {
       region_variance_ -= squared_row_norms(change);
     }
     ++chosen_;
+    ++progress_.generation;
   }
   /// Whether `update_all` is due.
   bool full() const { return chosen_ == kept; }
@@ -139,10 +143,13 @@ class GrowingDesign {
   static constexpr Index kept = 8;  // choices from one renewal to the next
   static constexpr Index part = 256;
 
-  /// Calls f(first, count) for all candidates, some at a time.
+  /// Calls f(first, count) for all candidates, some at a time, and reports.
   template <class F>
-  void in_parts(const F& f) const {
-    for (Index first = 0; first < size(); first += part) f(first, (std::min)(part, size() - first));
+  void in_parts(const F& f, Index at_a_time = part) const {
+    for (Index first = 0; first < size(); first += at_a_time) {
+      report_planning(observer_, progress_);
+      f(first, (std::min)(at_a_time, size() - first));
+    }
   }
   /// Products of a candidate's columns with each other; zero beyond them.
   /// @param from first row that counts
@@ -165,7 +172,9 @@ class GrowingDesign {
 
   const CandidateRows& rows_;
   MatrixX region_;
-  Index block_, chosen_ = 0;   // choices since the last renewal
+  Index block_, chosen_ = 0;  // choices since the last renewal
+  const ObserverRef& observer_;
+  Progress progress_{};
   MatrixX covariance_;         // S as of then
   MatrixX directions_;         // G of each choice since, beside each other
   MatrixX of_region_;          // products of the region's rows and those
@@ -208,21 +217,16 @@ struct DesignOffer {
   }
 };
 
-VERNIER_IMPL PoseDesign design_poses(const CandidateRows& rows, const PoseDesignOptions& options,
-                                     const ConstMatrixRef& measured, const ConstMatrixRef& region) {
-  check_design(rows, measured, region, options);
+/// Makes all choices; those made are in `out` whenever it ends.
+/// @throws PlanningStopped where the observer requests a stop
+VERNIER_LOCAL void choose_poses(const CandidateRows& rows, const PoseDesignOptions& options,
+                                const ConstMatrixRef& measured, const ConstMatrixRef& region, PoseDesign& out) {
   const Eigen::MatrixXi& bins = options.coverage.bins;
   const bool by_region = options.criterion == DesignCriterion::region_variance;
-  PoseDesign out;
-  out.missing = options.coverage.missing;
-  out.log_det.setZero(options.count + 1);
   GrowingDesign design(rows, measured,
                        region.rows() > 0 ? MatrixX(VERNIER_LATER(region).transpose()) : MatrixX(rows.unknowns(), 0),
                        options);
-  if (region.rows() > 0) {
-    out.region_variance.resize(options.count + 1);
-    out.region_variance(0) = design.region_variance();
-  }
+  if (region.rows() > 0) out.region_variance(0) = design.region_variance();
   const auto covered = [&](Index c) {
     int sum = 0;
     for (Index k = 0; bins.rows() > 0 && k < bins.cols(); ++k) sum += out.missing(bins(c, k)) > 0 ? 1 : 0;
@@ -259,6 +263,23 @@ VERNIER_IMPL PoseDesign design_poses(const CandidateRows& rows, const PoseDesign
     }
     design.choose(best);
     if (region.rows() > 0) out.region_variance(step + 1) = design.region_variance();
+    report_planning(options.observer, {step + 1, 0, out.log_det(step + 1)});
+  }
+}
+
+VERNIER_IMPL PoseDesign design_poses(const CandidateRows& rows, const PoseDesignOptions& options,
+                                     const ConstMatrixRef& measured, const ConstMatrixRef& region) {
+  check_design(rows, measured, region, options);
+  PoseDesign out;
+  out.missing = options.coverage.missing;
+  out.log_det.setZero(options.count + 1);
+  if (region.rows() > 0) out.region_variance.setZero(options.count + 1);
+  try {
+    choose_poses(rows, options, measured, region, out);
+  } catch (const PlanningStopped&) {
+    const auto made = static_cast<Index>(out.chosen.size());
+    out.log_det.conservativeResize(made + 1);
+    if (region.rows() > 0) out.region_variance.conservativeResize(made + 1);
   }
   return out;
 }

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "vernier/core/fit_options.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
@@ -16,12 +17,13 @@ namespace vernier {
 /// @param joints n x joints [rad, m]
 /// @param speeds of the joints [rad/s, m/s], in any common proportion; empty: equal
 /// @param fixed  number of rows that stay first, in their order; the path starts at the last of them, or at row 0
+/// @param observer told after each sweep; a stop leaves the path as short as it is then
 /// @return the rows in the order of their visits
 /// @throws std::invalid_argument for values that are not finite, or speeds that are not positive
 /// @complexity O(n^2) a sweep over the path
 /// @cite Croes 1958 (2-opt); Or 1976
 VERNIER_API std::vector<Index> visiting_order(const ConstMatrixRef& joints, const VectorX& speeds = VectorX(),
-                                              Index fixed = 1);
+                                              Index fixed = 1, const ObserverRef& observer = {});
 
 /// Time of a path, see `visiting_order`.
 VERNIER_API double path_time(const ConstMatrixRef& joints, const std::vector<Index>& order,

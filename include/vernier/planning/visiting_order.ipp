@@ -97,7 +97,8 @@ class OpenPath {
 
 }  // namespace detail
 
-VERNIER_IMPL std::vector<Index> visiting_order(const ConstMatrixRef& joints, const VectorX& speeds, Index fixed) {
+VERNIER_IMPL std::vector<Index> visiting_order(const ConstMatrixRef& joints, const VectorX& speeds, Index fixed,
+                                               const ObserverRef& observer) {
   const Index n = joints.rows();
   demand(fixed >= 0 && fixed <= std::max<Index>(n, 1), "visiting_order: ", fixed, " of ", n, " rows are to stay first");
   if (n == 0) return {};
@@ -116,7 +117,7 @@ VERNIER_IMPL std::vector<Index> visiting_order(const ConstMatrixRef& joints, con
   constexpr int max_sweeps = 100;
   for (int sweep = 0; sweep < max_sweeps; ++sweep) {
     const bool reversed = path.reverse_stretches(), moved = path.move_stretches();
-    if (!reversed && !moved) break;
+    if ((!reversed && !moved) || !observer({sweep + 1, 0, 0})) break;
   }
   return path.order();
 }

@@ -14,6 +14,18 @@
 
 namespace vernier {
 
+/// What an `AnyPredictor` is made of: to be saved, and made again to the same bits.
+struct PredictorParts {
+  Index inputs = 0;                             ///< their number
+  int node_function = 0;                        ///< `detail::NodeFunction`
+  int input_map = 0;                            ///< `InputMap`
+  ColumnScaling scaling{};                      ///< of the features of the inputs
+  VectorX nodes{};                              ///< w and b of each node, node by node
+  MatrixX coefficients{};                       ///< nodes x outputs
+  VectorX offset{};                             ///< one an output
+  std::optional<detail::SpreadParts> spread{};  ///< of a Gaussian process
+};
+
 /// A fitted map whose numbers of inputs and outputs are known at run time. It predicts what the predictor of a fixed
 /// size predicts, to the bit.
 class AnyPredictor {
@@ -26,6 +38,12 @@ class AnyPredictor {
   VERNIER_API AnyPredictor(const detail::FittedKernels& kernels, Index inputs);
   /// A Gaussian process, which has standard deviations.
   VERNIER_API AnyPredictor(const detail::FittedProcess& process, Index inputs);
+
+  /// Of its parts.
+  /// @throws std::invalid_argument for sizes that do not fit together
+  VERNIER_API explicit AnyPredictor(const PredictorParts& parts);
+  /// What it is made of.
+  VERNIER_API PredictorParts parts() const;
 
   /// Number of inputs.
   Index inputs() const { return inputs_; }
@@ -50,6 +68,8 @@ class AnyPredictor {
   VERNIER_API void check(Index columns) const;
 
   Index inputs_;
+  detail::NodeFunction function_;
+  InputMap map_;
   detail::NodeSum sum_;
   std::optional<detail::ProcessSpread> spread_{};
 };

@@ -21,10 +21,9 @@ template <class R, class A>
 AnyPredictor fit_any(const Tuned<R, A>& tuned, const ConstMatrixRef& inputs, const ConstMatrixRef& targets,
                      const FitOptions& options = {}) {
   demand(tuned.search_samples == 0, "fit_any: a search on a part of the samples needs fixed numbers of columns");
-  const SearchResult found =
-      minimize(tuned.algorithm, detail::RunTimeFit::objective(tuned.regressor, inputs, targets, options.weights),
-               tuned.regressor.box(static_cast<int>(inputs.cols())), tuned.stop, options.seed, options.executor,
-               options.observer);
+  const auto objective = detail::RunTimeFit::objective(tuned.regressor, inputs, targets, options.weights);
+  const SearchResult found = minimize(tuned.algorithm, objective, tuned.regressor.box(static_cast<int>(inputs.cols())),
+                                      tuned.stop, options.seed, options.executor, options.observer);
   const auto further = [&](const Progress& p) {
     return options.observer(Progress{found.generations + p.generation, found.evaluations + p.evaluations, p.best});
   };

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "vernier/core/fit_options.hpp"
 #include "vernier/core/function_ref.hpp"
 #include "vernier/kinematics/detail/branch_refinement.hpp"
 
@@ -69,6 +70,7 @@ struct PathSettings {
   double tolerance, rotation_tolerance, max_joint_step;
   int max_inserted;
   PathJoints lower, upper, start;
+  ObserverRef observer{};  ///< see `PathOptions`
 };
 
 /// A command of the path.
@@ -89,6 +91,7 @@ struct SolvedPath {
   double before = 0, after = 0;  ///< largest deviation of linear moves [m]
 };
 
+/// All commands; those of the first targets alone where the observer stops it.
 VERNIER_API SolvedPath solve_path(const PathArm& arm, const std::vector<PathGoal>& goals, const PathSettings& settings);
 
 /// The joint values from which an arm comes to q on its way from a command, as hysteresis counts: a joint that goes on

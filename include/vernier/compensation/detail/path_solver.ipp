@@ -352,8 +352,12 @@ VERNIER_IMPL SolvedPath PathSearch::run() {
   if (started) close_to = settings_.start;
   const std::vector<PathState> beginning{{close_to, 0, 0, -1, false}};
 
+  const auto stopped = [&](std::size_t commands, std::size_t looked_at) {
+    return !settings_.observer({static_cast<Index>(commands), static_cast<Index>(looked_at), 0});
+  };
   std::size_t last = n;
   for (std::size_t k = 0; k < n; ++k) {
+    if (stopped(0, k)) return {};
     branches.clear();
     const std::vector<PathState>& before = last < n ? states[last] : beginning;
     const auto cheapest = std::min_element(before.begin(), before.end(), cheaper);
@@ -386,6 +390,7 @@ VERNIER_IMPL SolvedPath PathSearch::run() {
   SolvedPoint before;
   bool any = false;
   for (std::size_t k = 0; k < n; ++k) {
+    if (stopped(k, n)) return out;
     const auto target = static_cast<Index>(k);
     if (chosen[k] >= 0) {
       move_to(target, states[k][static_cast<std::size_t>(chosen[k])], any ? &before : nullptr, out);

@@ -6,9 +6,19 @@
 
 #include <vector>
 
+#include "vernier/core/fit_options.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier::detail {
+
+/// Thrown through planning that is to end, and caught there.
+struct PlanningStopped {};
+
+/// Reports to an observer.
+/// @throws PlanningStopped where it requests a stop
+inline void report_planning(const ObserverRef& observer, const Progress& progress) {
+  if (!observer(progress)) throw PlanningStopped();
+}
 
 /// Whitened rows of n candidates, as many each, transposed. Unknowns are dense ones, then groups of factored ones, as
 /// in `RowBlock`: entry (unknown k of group j, row r of candidate c) is `factors(j, c block + r) functions(k, c)`. A

@@ -25,12 +25,14 @@ struct PlannedCalibration {
 /// six. Frames are all but free.
 /// @param joints   n x joints [rad, m]
 /// @param previous from which they are approached, likewise; no rows, or not finite, where unknown
+/// @param observer told every 64 poses
+/// @throws PlanningStopped where the observer requests a stop
 VERNIER_API CandidateRows expected_candidate_rows(const PlannedCalibration& planned, const ConstMatrixRef& joints,
-                                                  const ConstMatrixRef& previous);
+                                                  const ConstMatrixRef& previous, const ObserverRef& observer = {});
 
 /// Those rows as one matrix, a column an unknown.
 VERNIER_API MatrixX expected_rows(const PlannedCalibration& planned, const ConstMatrixRef& joints,
-                                  const ConstMatrixRef& previous);
+                                  const ConstMatrixRef& previous, const ObserverRef& observer = {});
 
 }  // namespace vernier::detail
 

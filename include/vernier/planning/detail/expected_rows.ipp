@@ -14,7 +14,7 @@
 namespace vernier::detail {
 
 VERNIER_IMPL CandidateRows expected_candidate_rows(const PlannedCalibration& planned, const ConstMatrixRef& joints,
-                                                   const ConstMatrixRef& previous) {
+                                                   const ConstMatrixRef& previous, const ObserverRef& observer) {
   const ArmGeometry& nominal = planned.nominal;
   const IdentificationPlan parameters(nominal, planned.geometry);
   std::vector<GeometricUnknown> unknowns;
@@ -43,6 +43,7 @@ VERNIER_IMPL CandidateRows expected_candidate_rows(const PlannedCalibration& pla
   out.functions.resize(precisions.size() - few, n);
   out.factors.resize(static_cast<Index>(out.groups.size()), n * out.block);
   visit_blocks(problem.system(), 0, 1, n, [&](Index c, const RowBlock& rows) {
+    if (c % 64 == 0) report_planning(observer, {});
     for (Index r = 0; r < out.block; ++r) {
       const Index column = c * out.block + r;
       for (Index k = 0; k < few; ++k) out.dense(k, column) = rows.dense(r, k) / std::sqrt(precisions(k));
@@ -56,8 +57,8 @@ VERNIER_IMPL CandidateRows expected_candidate_rows(const PlannedCalibration& pla
 }
 
 VERNIER_IMPL MatrixX expected_rows(const PlannedCalibration& planned, const ConstMatrixRef& joints,
-                                   const ConstMatrixRef& previous) {
-  const CandidateRows rows = expected_candidate_rows(planned, joints, previous);
+                                   const ConstMatrixRef& previous, const ObserverRef& observer) {
+  const CandidateRows rows = expected_candidate_rows(planned, joints, previous, observer);
   return VERNIER_LATER(rows.columns(0, rows.size())).transpose();
 }
 

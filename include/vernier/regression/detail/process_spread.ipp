@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/core/simd.hpp"
 #include "vernier/regression/detail/process_spread.hpp"
@@ -25,6 +27,11 @@ VERNIER_IMPL LowerInverseTiles::LowerInverseTiles(const MatrixX& factor) {
         std::copy_n(&columns(i * size - first, c), height, tiles_.data() + offset(i, j) + c * size);
     }
   }
+}
+
+VERNIER_IMPL LowerInverseTiles::LowerInverseTiles(std::vector<double> values) : tiles_(std::move(values)) {
+  while (offset(rows_, 0) < tiles_.size()) ++rows_;
+  demand(offset(rows_, 0) == tiles_.size(), "LowerInverseTiles: ", tiles_.size(), " values are no triangle of tiles");
 }
 
 /// A tile of values of nodes, zero beyond the last.
@@ -77,6 +84,15 @@ VERNIER_IMPL ProcessSpread::ProcessSpread(const KernelSystem& system, const Vect
       signal_deviation_(VERNIER_LATER(signal_variance).cwiseSqrt()),
       noise_ratio_(noise_ratio) {
   VERNIER_LATER(ones_).head(system.ones.size()) = system.ones;
+}
+
+VERNIER_IMPL ProcessSpread::ProcessSpread(const SpreadParts& parts)
+    : inverse_(parts.inverse),
+      ones_(parts.ones),
+      precision_(parts.precision),
+      signal_deviation_(parts.signal_deviation),
+      noise_ratio_(parts.noise_ratio) {
+  demand(ones_.size() == inverse_.rows(), "ProcessSpread: ", ones_.size(), " values for ", inverse_.rows(), " rows");
 }
 
 VERNIER_IMPL void ProcessSpread::standard_deviation(const NodeSum& kernels, const double* x, double* out,

@@ -510,6 +510,15 @@ TEST_F(CorrectProgram, StatementsThatVoidTargetsAreNamed) {
   EXPECT_NE(stated.output.find("a.mod: 4 targets corrected"), std::string::npos) << stated.output;
 }
 
+TEST_F(CorrectProgram, KeepsEveryByteWhereNothingIsCorrected) {
+  make_model(robots::abb_irb120(), 21);
+  const std::string text = "MODULE a\nPROC main()\nMoveL Offs(p1,0,0,5),v100,z10,tool0;\nENDPROC\nENDMODULE\n";
+  write_file(folder_ / "a.mod", text);
+  const CommandResult done = correct("--program a.mod --out b.mod --allow-uncorrected");
+  EXPECT_EQ(done.exit_code, 0) << done.errors;
+  EXPECT_EQ(read_file(folder_ / "b.mod"), text);
+}
+
 TEST_F(CorrectProgram, WrongUseIsRefusedInOneLine) {
   make_model(robots::abb_irb120(), 21);
   write_file(folder_ / "a.mod", "MODULE a\nENDMODULE\n");
@@ -527,6 +536,8 @@ TEST_F(CorrectProgram, WrongUseIsRefusedInOneLine) {
   expect("--program none.mod --out b.mod", 1, "none.mod");
   expect("--program cut.mod --out b.mod", 1, "cut.mod, line 2: a bracket [ is not closed");
   expect("--program a.mod --tool 1,2,3 --out b.mod", 2, "--tool 1,2,3: not six numbers");
+  expect("--program a.mod --assume-harmless nosuch --out b.mod", 2,
+         "--assume-harmless 'nosuch': a.mod does not name it");
   expect("--program a.mod --controller none.conf --out b.mod", 1, "none.conf");
   save(folder_ / "model.json",
        CalibratedRobot<7>("seven",

@@ -140,6 +140,11 @@ TEST_F(Outputs, LinksAreFollowedAndModesStay) {
   EXPECT_EQ(read_file(at("link.partial")), "of the user");
 }
 
+TEST_F(Outputs, ExitCodesHoldIfNobodyCanReadErrors) {
+  EXPECT_EQ(run(correct + "--nonsense 2>/dev/full").exit_code, 2);
+  EXPECT_EQ(run("$P/correct --model none.json --targets none.csv --out o.csv 2>/dev/full").exit_code, 1);
+}
+
 TEST_F(Outputs, TwoOutputsAreTwoFiles) {
   write_file(at("a.csv"), "old");
   fs::create_symlink("a.csv", at("b.csv"));
@@ -151,6 +156,8 @@ TEST_F(Outputs, TwoOutputsAreTwoFiles) {
   expect_refused(correct + "--out new.csv --json c.csv", 2, "--json and --out cannot both be new.csv");
   expect_refused("$P/calibrate --robot abb_irb120 --data measured.csv --save m --report m", 2,
                  "--save and --report cannot both be m");
+  expect_refused("$P/calibrate --robot abb_irb120 --data measured.csv --save calibrate_out/poses.svg", 2,
+                 "--save calibrate_out/poses.svg: figures are called so");
   const CommandResult beside = run(correct + "--out x --json x.partial");
   EXPECT_EQ(beside.exit_code, 0) << beside.errors;
   EXPECT_EQ(nlohmann::json::parse(read_file(at("x.partial")))["targets"], 2);

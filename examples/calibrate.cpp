@@ -14,6 +14,7 @@
 #include "cli.hpp"
 #include "console.hpp"
 #include "contact_calibration.hpp"
+#include "distance_calibration.hpp"
 #include "json_file.hpp"
 #include "parameter_table.hpp"
 #include "pose_calibration.hpp"
@@ -135,8 +136,8 @@ int run(support::Program& program) {
   if (o.data.empty()) {
     const vn::RobotDescription robot = support::choose_robot(o.robot);
     o.csv.controller = robot.controller;
-    return support::calibrate_by_contacts(program, robot, o.contacts, o.csv.format(), o.calibrate.geometry,
-                                          o.calibrate.sensors, o.save, o.date);
+    return o.contacts.empty() ? support::calibrate_by_distances(program, robot, o)
+                              : support::calibrate_by_contacts(program, robot, o);
   }
   return calibrate_by_poses(program, o);
 }

@@ -33,6 +33,7 @@ struct CalibrationOptions {
   CsvOptions csv;                            ///< how these files are written
   SensorOptions sensor;                      ///< accuracy of measured poses; `calibrate.sensors` has it, too
   std::string split;                         ///< how a fraction of the rows is held out; empty: every K-th row
+  bool holds_out = false;                    ///< whether the command line says what is held out; of poses always some
   vernier::Index test_every = 5;             ///< that K
   double test_fraction = 0.2;                ///< that fraction
   vernier::Index train_rows = 0;             ///< rows to learn from; 0: all that are not held out

@@ -25,15 +25,6 @@ namespace {
 
 namespace vn = vernier;
 
-vn::VectorX search_priors(const vn::PriorObjective& objective, const vn::Box& box, bool genetic,
-                          const vn::FitOptions& fit) {
-  const auto best = [&](const auto& algorithm) {
-    return vn::minimize(algorithm, objective, box, {}, fit.seed, fit.executor, fit.observer).best;
-  };
-  if (genetic) return best(vn::GeneticAlgorithm{.individuals = 20, .generations = prior_generations});
-  return best(vn::Pso{.particles = 20, .iterations = prior_generations, .positions = vn::PositionRule::clamped});
-}
-
 /// Names of files without their folders, joined by commas.
 std::string file_names(const std::vector<std::string>& paths) {
   std::string out;
@@ -163,6 +154,15 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
 }
 
 }  // namespace
+
+vernier::VectorX search_priors(const vernier::PriorObjective& objective, const vernier::Box& box, bool genetic,
+                               const vernier::FitOptions& fit) {
+  const auto best = [&](const auto& algorithm) {
+    return vn::minimize(algorithm, objective, box, {}, fit.seed, fit.executor, fit.observer).best;
+  };
+  if (genetic) return best(vn::GeneticAlgorithm{.individuals = 20, .generations = prior_generations});
+  return best(vn::Pso{.particles = 20, .iterations = prior_generations, .positions = vn::PositionRule::clamped});
+}
 
 PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, const CalibrationOptions& options,
                                      const vernier::FitOptions& fit) {

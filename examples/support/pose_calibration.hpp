@@ -12,6 +12,7 @@
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/core/fit_options.hpp"
+#include "vernier/error_model/prior_objective.hpp"
 #include "vernier/io/report_input.hpp"
 #include "vernier/io/robot_file.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
@@ -20,6 +21,14 @@ namespace support {
 
 /// Generations of a search of priors.
 inline constexpr vernier::Index prior_generations = 15;
+
+/// Sizes of joint errors by a swarm, or by a genetic algorithm.
+/// @param objective of left-out poses
+/// @param box       of its arguments
+/// @param genetic   by a genetic algorithm
+/// @param fit       seed, executor and observer
+vernier::VectorX search_priors(const vernier::PriorObjective& objective, const vernier::Box& box, bool genetic,
+                               const vernier::FitOptions& fit);
 
 /// A reflector on the flange.
 struct FoundReflector {

@@ -79,23 +79,28 @@ void add_cameras(Program& program, CalibrationOptions& o) {
                   "NAMES")
       .delimiter(',')
       .needs(intrinsics);
-  const Option seen =
+  Option seen =
       program
           .add_option("--save-poses", o.save_poses,
                       "write the poses that the images show, with their covariances, to a file that --data takes (for "
                       "joint errors, plans, reports); of several places of the board to poses.csv, poses.2.csv, ...",
                       "FILE")
           .needs(corners);
+  const Option joints = program
+                            .add_flag("--joint-errors", o.joint_errors,
+                                      "find the errors of the joints as well, from the poses that the images show, and "
+                                      "assess all at held-out images, as without --corners")
+                            .needs(corners);
   Option poses =
       program.add_option("--flange-poses", o.flange_poses,
                          "poses of the flange in place of joints, for base and tool alone: image, x_mm, y_mm, "
                          "z_mm, rx_rad, ry_rad, rz_rad",
                          "FILE");
   poses.needs(corners);
-  poses.excludes(seen);
+  poses.excludes(seen).excludes(joints);
+  seen.excludes(joints);
   for (const char* other : {"--data", "--robot", "--save"}) poses.excludes(program.option(other));
-  for (const char* other : {"--distances", "--contacts", "--test", "--test-every", "--split", "--train", "--report",
-                            "--own-tools", "--prior", "--priors", "--model"})
+  for (const char* other : {"--distances", "--contacts", "--test", "--own-tools", "--model"})
     corners.excludes(program.option(other));
 }
 
@@ -202,6 +207,10 @@ void add_reregistration(Program& program, CalibrationOptions& o) {
 /// Refuses what cannot be used together.
 void require_consistent(const Program& program, const CalibrationOptions& o) {
   if (!o.corners.empty()) {
+    for (const char* of_poses :
+         {"--test-every", "--split", "--test-fraction", "--train", "--report", "--prior", "--priors"})
+      if (!o.joint_errors && program.given(of_poses))
+        throw UsageError(std::string(of_poses) + " needs --joint-errors beside --corners");
     if (!o.flange_poses.empty()) return;
     if (o.data.size() != 1)
       throw UsageError("--corners takes one file of --data, the joints of the images, or --flange-poses");

@@ -5,9 +5,11 @@
 /// `calibrate` from measured poses, whatever the number of joints.
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "calibration_data.hpp"
 #include "calibration_options.hpp"
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/calibration/data_audit.hpp"
@@ -48,6 +50,7 @@ struct PoseCalibration {
   vernier::SourceFile model{};                ///< that was saved; without a name where none was
   std::vector<std::string> sets{};            ///< of poses: the file, with the reflector where it has several
   std::vector<FoundReflector> reflectors{};   ///< of files with several, or with `--own-tools`; else none
+  vernier::JointErrors joint_errors{};        ///< of the deployed stage; may be empty
   std::vector<std::string> further_models{};  ///< of the other tools, in the order of `sets`
   vernier::ReportInput page{};                ///< what an HTML page shows; empty unless it is asked for
   /// Held-out position errors at the first station by another description of the arm, its base and tool registered by
@@ -62,5 +65,16 @@ struct PoseCalibration {
 /// @throws UsageError for an earlier model of another arm
 PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, const CalibrationOptions& options,
                                      const vernier::FitOptions& fit);
+
+/// Does so with measurements that were read already; of an arm of N joints, with the options that it leaves open.
+/// Compiled in pose_calibration.cpp, for all numbers of joints.
+template <int N>
+PoseCalibration calibrate_measured(const vernier::RobotDescription& robot, const CalibrationOptions& options,
+                                   const vernier::FitOptions& fit, std::shared_ptr<const MeasuredFiles<N>> measured);
+
+/// Options with those frames unknown that the arm does not state as known, and without what its passive joints hide,
+/// which it prints.
+/// @throws UsageError for a known base of several stations
+CalibrationOptions options_for(CalibrationOptions options, const vernier::RobotDescription& arm);
 
 }  // namespace support

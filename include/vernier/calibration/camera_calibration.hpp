@@ -31,6 +31,7 @@ struct CameraOptions {
   /// Whether left-out images decide on further unknowns: radial and tangential distortion, focal lengths, principal
   /// point, radial distortion of sixth order, a bent board.
   bool choose = true;
+  bool bend = false;           ///< whether a bend of the board is estimated from the start on
   bool left_out = true;        ///< whether images are left out in turn to report errors at them
   Loss loss = Loss::huber;     ///< how residuals are weighted; huber tolerates wrong corners
   IdentifyOptions geometry{};  ///< which parameters of the arm are estimated, with which priors
@@ -116,8 +117,14 @@ Measurements<N> measured_poses(const CameraReport& report, const ImageRows& rows
       set_point(orientations, i, log_so3(rotation(pose.pose)));
       covariances.push_back(pose.covariance);
     }
-    out.add(Dataset<N>(joints, positions, orientations).without_approach().with_covariances(std::move(covariances)),
-            names[base]);
+    Dataset<N> poses =
+        Dataset<N>(joints, positions, orientations).without_approach().with_covariances(std::move(covariances));
+    if (!rows.origin.empty()) {
+      std::vector<Index> origins;
+      for (const ImagePose* pose : here) origins.push_back(pose->row);
+      poses = poses.from(rows.origin.rows(origins));
+    }
+    out.add(std::move(poses), names[base]);
   }
   return out;
 }

@@ -176,6 +176,7 @@ VERNIER_IMPL CameraFreedom CameraRun::first_freedom() const {
   CameraFreedom out;
   out.scale = board_.scale_sigma > 0;
   out.arm = nominal_.has_value();
+  out.bend = options_.bend;
   if (options_.cameras.empty()) std::fill_n(out.intrinsics.begin(), 6, true);  // up to k2
   for (const std::string& name : options_.free)
     out.intrinsics[static_cast<std::size_t>(std::find(Camera::names.begin(), Camera::names.end(), name) -
@@ -499,7 +500,8 @@ VERNIER_IMPL void CameraRun::report_images(const CameraProblem& problem, CameraR
     out.images.push_back(std::move(one));
     if (const auto seen = problem.seen_pose(v))
       if (positive_definite(seen->second, 6))
-        out.poses.push_back({placed_[v].row, placed_[v].base, placed_[v].tool, seen->first, by_pixels * seen->second});
+        out.poses.push_back({placed_[v].row, placed_[v].base, placed_[v].tool, seen->first, by_pixels * seen->second,
+                             problem.effect_of_shared(v, seen->first)});
   }
   out.mean = sum / static_cast<double>(corners);
 }
@@ -581,6 +583,8 @@ VERNIER_IMPL void CameraRun::report_unknowns(const CameraProblem& problem, Camer
   };
   frames(problem.state.bases, true, out.in_base, out.in_base_std);
   frames(problem.state.tools, false, out.in_flange, out.in_flange_std);
+  if (const Index shared = problem.unknowns() - at; shared > 0 && known)
+    out.shared_covariance = larger(at, shared)->block(at, at, shared, shared);
   for (std::size_t c = 0; c < problem.state.cameras.size(); ++c) {
     VectorX std = VectorX::Zero(Camera::num_parameters);
     std::vector<Index> estimated;

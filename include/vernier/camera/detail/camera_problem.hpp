@@ -130,6 +130,9 @@ class CameraProblem {
   /// rotations [rad] of P, in the frame in which P is.
   /// @return nothing where its corners do not determine a pose
   VERNIER_API std::optional<std::pair<Isometry3, Matrix6>> seen_pose(std::size_t view) const;
+  /// What intrinsics and the shape of the board do to the pose that a view alone shows, at that pose: 6 x those of all
+  /// cameras and the board that are free, in steps, in their order.
+  VERNIER_API MatrixX effect_of_shared(std::size_t view, const Isometry3& pose) const;
   /// Modelled pose of any view.
   VERNIER_API Isometry3 pose_of(const PlacedView& view) const;
 

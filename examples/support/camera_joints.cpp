@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "camera_joints.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "camera_calibration.hpp"
+#include "dispatch.hpp"
+#include "vernier/calibration/joints_by_camera.hpp"
+
+namespace support {
+
+namespace {
+
+namespace vn = vernier;
+
+/// The parts of common errors that belong to the poses of a fit, found by their lines.
+template <int N>
+std::vector<vn::SharedErrors> of_training(const std::vector<vn::SharedErrors>& all, const vn::ImageRows& rows,
+                                          const vn::CameraReport& camera, const MeasuredFiles<N>& measured) {
+  std::vector<vn::SharedErrors> out;
+  std::size_t set = 0;
+  for (std::size_t base = 0; base < camera.in_base.size() && set < all.size(); ++base) {
+    std::map<vn::Index, std::size_t> at;  // by line
+    std::size_t count = 0;
+    for (const vn::ImagePose& pose : camera.poses)
+      if (pose.base == static_cast<vn::Index>(base))
+        at.emplace(rows.origin.line[static_cast<std::size_t>(pose.row)], count++);
+    if (count == 0) continue;
+    vn::SharedErrors one;
+    const vn::Dataset<N>& train = measured.train.poses()[set];
+    one.joints = train.joints();
+    for (const vn::Index line : train.origin().line) {
+      one.covariances.push_back(all[set].covariances[at.at(line)]);
+      one.effects.push_back(all[set].effects[at.at(line)]);
+    }
+    out.push_back(std::move(one));
+    ++set;
+  }
+  return out;
+}
+
+template <int N>
+CameraJoints calibrate_arm(const vn::RobotDescription& description, const CalibrationOptions& given,
+                           const vn::FitOptions& fit) {
+  CalibrationOptions o = options_for(given, description);
+  o.calibrate.errors.tilt = o.calibrate.errors.drift = false;  // no errors of joint values
+  CameraInputs in = read_camera_inputs(o);
+  in.format.controller = description.controller;
+  const vn::DescribedRobot<N> robot = description.arm<N>();
+  const std::vector<vn::JointType> types = description.joint_types();
+  const vn::ImageRows rows = vn::read_image_joints(o.data.front(), N, types, in.format);
+
+  CalibrationOptions of_round = o;
+  of_round.save.clear();
+  of_round.report.clear();
+  of_round.calibrate.remainder.on_geometry = of_round.calibrate.remainder.on_error_model = false;
+  const auto split = [&](const vn::Measurements<N>& poses) { return hold_out_poses<N>(poses, o, types, fit.seed); };
+  auto found = vn::calibrate_joints_by_camera(
+      robot.arm, in.board, in.views, rows, in.options, [&](const vn::Measurements<N>& poses) {
+        MeasuredFiles<N> now = split(poses);
+        now.audited = true;
+        return calibrate_measured<N>(description, of_round, fit,
+                                     std::make_shared<const MeasuredFiles<N>>(std::move(now)))
+            .joint_errors;
+      });
+  MeasuredFiles<N> measured = split(found.poses);
+  measured.camera = setup_of(found.camera);
+  const std::vector<vn::SharedErrors> shared =
+      of_training<N>(vn::shared_errors(found.camera, rows), rows, found.camera, measured);
+  measured.covariance = [shared, common = found.camera.shared_covariance](const vn::ErrorModelEstimate& estimate) {
+    return vn::covariance_with_shared_errors(estimate, shared, common);
+  };
+  measured.held_out += "; images held out have their share in the intrinsics";
+  return {calibrate_measured<N>(description, o, fit, std::make_shared<const MeasuredFiles<N>>(std::move(measured))),
+          found.camera, found.moved, found.converged};
+}
+
+}  // namespace
+
+CameraJoints calibrate_joints_by_camera(const vernier::RobotDescription& robot, const CalibrationOptions& options,
+                                        const vernier::FitOptions& fit) {
+  return dispatch_dof(robot.dof(), [&](auto n) { return calibrate_arm<n()>(robot, options, fit); });
+}
+
+}  // namespace support

@@ -10,11 +10,13 @@
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
 #include "touched_objects.hpp"
+#include "vernier/core/register_points.hpp"
 #include "vernier/core/sha256.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/identification/object_errors.hpp"
 #include "vernier/io/model_file.hpp"
+#include "vernier/simulation/error_sources.hpp"
 
 namespace vernier::calibrate_contacts_test {
 namespace {
@@ -179,6 +181,43 @@ TEST_F(CalibrateContacts, AnEarlierCalibrationIsThePrior) {
   EXPECT_LT(after, 1.05 * before);
   EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "out.json")).at("prior").at("model"), "earlier.json");
   EXPECT_NE(load<6>(folder_ / "model.json").estimate(), nullptr);
+}
+
+TEST_F(CalibrateContacts, JointErrorsOfAnEarlierCalibrationAreHeld) {
+  using Geared = Framed<WithJointErrors<DhChain<6>>>;
+  const JointErrorSizes sizes{.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0.4e-3, .harmonics = 2};
+  const Geared arm({actual_arm().chain(), draw_joint_errors(actual_arm().chain(), sizes, 3)}, {},
+                   actual_arm().tool_frame());
+  const auto region = abb_irb120_operating_region();
+  write_dataset(folder_ / "poses.csv", measure(arm, region.sample(robots::abb_irb120().chain, 150, 5),
+                                               {.position = 0.02e-3, .with_orientations = false}, 6));
+  write_file(folder_ / "few.csv",
+             text_of({touch(arm, vernier_test::table, "table", lengths(8, 4, 0.1), region.limits, 0.02e-3, 1),
+                      touch(arm, vernier_test::front, "front", lengths(8), region.limits, 0.02e-3, 2),
+                      touch(arm, vernier_test::side, "side", lengths(8), region.limits, 0.02e-3, 3)}));
+  ASSERT_EQ(calibrate("--data poses.csv --harmonics 2 --no-tilt --no-drift --threads 1 --save earlier.json").exit_code,
+            0);
+  const CommandResult result = calibrate("--contacts few.csv --prior earlier.json --save model.json --json out.json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto earlier = load<6>(folder_ / "earlier.json"), model = load<6>(folder_ / "model.json");
+  const VectorX& held = earlier.identified().model().joint_errors().coefficients();
+  ASSERT_GT(held.size(), 0);
+  EXPECT_EQ(model.identified().model().joint_errors().coefficients(), held);
+  EXPECT_GT(model.estimate()->covariance.rows(), held.size());
+  const auto error = [&](const auto& of) {
+    const JointRows<6> joints = region.sample(robots::abb_irb120().chain, 100, 9);
+    PointRows points(100, 3), actual(100, 3);
+    for (Index i = 0; i < 100; ++i) {
+      set_point(points, i, of.position(configuration(joints, i)));
+      set_point(actual, i, arm.position(configuration(joints, i)));
+    }
+    const Isometry3 base = register_points(points, actual);
+    double sum = 0;
+    for (Index i = 0; i < 100; ++i) sum += (transformed(base, point(points, i)) - point(actual, i)).norm() / 100;
+    return sum;
+  };
+  EXPECT_LT(error(earlier), 0.05e-3);
+  EXPECT_LT(error(model), 1.2 * error(earlier));
 }
 
 TEST_F(CalibrateContacts, DistancesAloneCalibrate) {

@@ -65,11 +65,11 @@ void study(std::uint64_t seed) {
   const auto simulated = vernier_test::simulated_views(actual, robot.limits, setup, seed + 1);
   const double began = vn::detail::steady_seconds();
   std::optional<vn::Calibration<Chain>> by_camera;
-  const auto found = vn::calibrate_joints_by_camera(robot, setup.board, simulated.views, simulated.rows,
-                                                    {.left_out = false}, [&](const vn::Measurements<6>& poses) {
-                                                      by_camera = vn::calibrate(robot.chain, poses, options);
-                                                      return by_camera->model().identified().model().joint_errors();
-                                                    });
+  const auto found = vn::calibrate_joints_by_camera(
+      robot, setup.board, simulated.views, simulated.rows, {.left_out = false}, [&](const vn::Measurements<6>& poses) {
+        by_camera = vn::calibrate(robot.chain, poses, options);
+        return vn::JointFit{by_camera->errors.arm.joint_errors(), by_camera->errors};
+      });
   const double seconds = vn::detail::steady_seconds() - began;
 
   const vn::Framed<Actual> with_probe(actual, {}, vn::Isometry3(Eigen::Translation3d(0.02, 0.03, 0.12)));

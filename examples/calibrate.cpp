@@ -86,13 +86,10 @@ void print_reflectors(const std::vector<support::FoundReflector>& reflectors) {
 
 void print_camera(const support::CameraJoints& found) {
   fmt::print("{}\n", support::camera_text(found.camera));
-  if (found.moved.empty()) {
-    fmt::print("Intrinsics and geometry alone: the images show no joint errors\n\n");
-    return;
-  }
+  if (found.moved.empty()) return;
   std::string moved;
   for (const double one : found.moved) moved += fmt::format("{}{:.2f}", moved.empty() ? "" : ", ", one);
-  fmt::print("Intrinsics and joint errors in turn moved the intrinsics by {} standard deviations{}\n\n", moved,
+  fmt::print("Beside joint errors, steps of the intrinsics were {} standard deviations{}\n\n", moved,
              found.converged ? "; they rest" : "; THEY DO NOT REST: take more images, or state --intrinsics");
 }
 

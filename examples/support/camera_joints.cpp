@@ -8,6 +8,8 @@
 
 #include "camera_calibration.hpp"
 #include "dispatch.hpp"
+#include "instances.hpp"
+#include "saved_model.hpp"
 #include "vernier/calibration/joints_by_camera.hpp"
 
 namespace support {
@@ -53,18 +55,24 @@ CameraJoints calibrate_arm(const vn::RobotDescription& description, const Calibr
   const std::vector<vn::JointType> types = description.joint_types();
   const vn::ImageRows rows = vn::read_image_joints(o.data.front(), N, types, in.format);
 
-  CalibrationOptions of_round = o;
-  of_round.save.clear();
-  of_round.report.clear();
-  of_round.calibrate.remainder.on_geometry = of_round.calibrate.remainder.on_error_model = false;
+  std::optional<vn::SavedModel> earlier;
+  std::optional<vn::ArmPrior> prior;
+  if (!o.prior.empty()) {
+    earlier = vn::read_model(o.prior);
+    prior = prior_of(*earlier, N);
+  }
+  vn::CalibrateOptions of_round = o.calibrate;
+  of_round.errors.drives = robot.drives;
+  of_round.errors.down = robot.down;
+  if (prior) of_round.errors.prior = &*prior;
+  of_round.remainder.on_geometry = of_round.remainder.on_error_model = false;
+  of_round.keep_outliers = true;  // the loss weighs them down; the last fit names them
+  of_round.fit = fit;
   const auto split = [&](const vn::Measurements<N>& poses) { return hold_out_poses<N>(poses, o, types, fit.seed); };
   auto found = vn::calibrate_joints_by_camera(
       robot.arm, in.board, in.views, rows, in.options, [&](const vn::Measurements<N>& poses) {
-        MeasuredFiles<N> now = split(poses);
-        now.audited = true;
-        return calibrate_measured<N>(description, of_round, fit,
-                                     std::make_shared<const MeasuredFiles<N>>(std::move(now)))
-            .joint_errors;
+        const auto calibration = vn::calibrate(robot.arm, poses, of_round);
+        return vn::JointFit{calibration.errors.arm.joint_errors(), calibration.errors};
       });
   MeasuredFiles<N> measured = split(found.poses);
   measured.camera = setup_of(found.camera);

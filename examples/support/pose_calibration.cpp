@@ -109,8 +109,7 @@ PoseCalibration calibrate_measured(const vn::RobotDescription& description, cons
   if (!o.prior.empty()) earlier = vn::read_model(o.prior);
   std::optional<vn::ArmPrior> prior;
   if (earlier) prior = prior_of(*earlier, N);
-  std::vector<vn::DataAudit> audits;
-  if (!measured->audited) audits = audit_files(robot, *measured);
+  std::vector<vn::DataAudit> audits = audit_files(robot, *measured);
 
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
@@ -128,7 +127,6 @@ PoseCalibration calibrate_measured(const vn::RobotDescription& description, cons
                       .report = vn::evaluate(calibration, measured->test, robot.limits, robot.controller),
                       .held_out = measured->held_out,
                       .audits = std::move(audits)};
-  out.joint_errors = calibration.model().identified().model().joint_errors();
   out.error_of = [measured, o](const vn::RobotDescription& arm) { return held_out_error(arm, *measured, o); };
   const bool own_tools = measured->has_own_tools(options.errors.tool_per_station);
   out.sets = measured->names;

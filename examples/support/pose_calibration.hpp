@@ -50,7 +50,6 @@ struct PoseCalibration {
   vernier::SourceFile model{};                ///< that was saved; without a name where none was
   std::vector<std::string> sets{};            ///< of poses: the file, with the reflector where it has several
   std::vector<FoundReflector> reflectors{};   ///< of files with several, or with `--own-tools`; else none
-  vernier::JointErrors joint_errors{};        ///< of the deployed stage; may be empty
   std::vector<std::string> further_models{};  ///< of the other tools, in the order of `sets`
   vernier::ReportInput page{};                ///< what an HTML page shows; empty unless it is asked for
   /// Held-out position errors at the first station by another description of the arm, its base and tool registered by

@@ -4,6 +4,7 @@
 /// @file
 /// What a calibration by cameras found: intrinsics, frames, errors of images and decisions.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,6 +70,11 @@ struct CameraReport {
   /// Of the intrinsics and the shape of the board that were estimated, in steps of the fit: errors that the poses of
   /// all images share.
   MatrixX shared_covariance{};
+  MatrixX own_information{};  ///< what images and priors say of these, wherever the arm was: inverse of a covariance
+  VectorX own_gradient{};     ///< of half the sum of squares behind, at the present values
+  VectorX shared_steps{};     ///< units of these
+  /// Scale less one, and heights of the bent board at half a diagonal from the middle (xx, xy, yy), as poses have it.
+  std::array<double, 4> held_shape{};
   Board board{};                ///< as stated
   double board_scale = 1;       ///< lengths of the board in those that were stated
   double board_scale_std = 0;   ///< its standard deviation

@@ -2,7 +2,7 @@
 #pragma once
 
 /// @file
-/// Joint errors from images: geometry, joint errors, frames and intrinsics, each fitted with what the other fit found.
+/// Joint errors from images: geometry, joint errors, frames and intrinsics as one problem.
 
 #include <algorithm>
 #include <cmath>
@@ -12,19 +12,27 @@
 #include "vernier/calibration/camera_calibration.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
+#include "vernier/core/rigid_motions.hpp"
 #include "vernier/error_model/error_model_estimate.hpp"
+#include "vernier/least_squares/loss.hpp"
 
 namespace vernier {
+
+/// What a fit found from the poses that images show.
+struct JointFit {
+  JointErrors errors;           ///< of the joints
+  ErrorModelEstimate estimate;  ///< of the same fit, one station a set of poses
+};
 
 /// An arm with joint errors that was calibrated by a camera.
 template <class Chain>
 struct JointsByCamera {
-  CalibratedByCamera<Chain> camera;  ///< of the last round: intrinsics, frames and geometry beside the joint errors
-  Measurements<Chain::dof> poses;    ///< that images show with these intrinsics; the last joint errors are from them
-  JointErrors errors;                ///< of the joints
-  /// How far each round moved the intrinsics: the largest change, in standard deviations.
+  CalibratedByCamera<Chain> camera;  ///< of the last round, with its intrinsics; `shared_covariance` is that of both
+  Measurements<Chain::dof> poses;    ///< that images show with these intrinsics
+  JointErrors errors;                ///< of the joints, from these poses
+  /// How far each round was to move the intrinsics: the largest step, in standard deviations.
   std::vector<double> moved{};
-  bool converged = false;  ///< whether the last one moved them by less than a tenth
+  bool converged = false;  ///< whether the last step was below a tenth, and was not taken
 };
 
 /// Measured poses of a station whose errors have parts in common with those of others: a camera that took all images
@@ -103,47 +111,149 @@ VERNIER_API inline CameraOptions decided(CameraOptions options, const CameraRepo
   return options;
 }
 
-/// The largest change of an intrinsic, in standard deviations.
-VERNIER_API inline double change_of_intrinsics(const CameraReport& before, const CameraReport& after) {
-  double out = 0;
-  for (std::size_t c = 0; c < before.cameras.size(); ++c) {
-    const VectorX change = after.cameras[c].parameters() - before.cameras[c].parameters();
-    for (Index k = 0; k < change.size(); ++k)
-      if (const double std = after.camera_std[c](k); std > 0) out = (std::max)(out, std::abs(change(k)) / std);
+/// A step of intrinsics and the shape of the board, and their covariance.
+struct SharedStep {
+  VectorX step;        ///< in units of `CameraReport::shared_steps`
+  MatrixX covariance;  ///< likewise
+};
+
+/// The Newton step of what all images share, of the least sum of squares over everything else: images by themselves,
+/// and their poses about an arm that moves along.
+/// @param estimate of the arm, fitted to the poses of `stations`
+/// @param seen     those poses
+inline SharedStep shared_step(const ErrorModelEstimate& estimate, const std::vector<SharedErrors>& stations,
+                              const std::vector<std::vector<Isometry3>>& seen, const CameraReport& camera, Loss loss) {
+  const ArmParameterisation& arm = estimate.arm;
+  const Index shared = camera.own_gradient.size();
+  std::vector<MatrixX> rows, effects, residuals;  // whitened
+  std::vector<double> norms;
+  for (std::size_t s = 0; s < stations.size(); ++s) {
+    const auto n = static_cast<std::size_t>(stations[s].joints.rows());
+    std::vector<RowBlock> linear(n);
+    arm.linearise(static_cast<int>(s), stations[s].joints, MatrixX(), linear.data());
+    const std::vector<Isometry3> modelled = arm.poses(static_cast<int>(s), stations[s].joints);
+    for (std::size_t i = 0; i < n; ++i) {
+      Rows6 expanded(6, arm.size());
+      linear[i].expand(arm.group_sizes(), expanded);
+      MatrixX factor = stations[s].covariances[i], j = expanded, g = stations[s].effects[i];
+      MatrixX r = pose_difference(modelled[i], seen[s][i]);
+      demand(cholesky(factor), "calibrate_joints_by_camera: a covariance is not positive definite");
+      solve_lower(factor, j);
+      solve_lower(factor, g);
+      solve_lower(factor, r);
+      norms.push_back(std::sqrt(r.squaredNorm() / 2));
+      rows.push_back(std::move(j));
+      effects.push_back(std::move(g));
+      residuals.push_back(std::move(r));
+    }
   }
+  const double limit = robust_threshold(norms, 3);
+  const double scatter = (std::max)(1.0, estimate.residual_variance);  // of poses about the arm
+  MatrixX information = MatrixX::Zero(shared, shared), coupling = MatrixX::Zero(arm.size(), shared),
+          slope = MatrixX::Zero(shared, 1);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double weight = (limit > 0 ? robust_weight(loss, norms[i], limit) : 1) / scatter;
+    add_transposed_product(information, effects[i], effects[i], weight);
+    add_transposed_product(coupling, rows[i], effects[i], weight);
+    add_transposed_product(slope, effects[i], residuals[i], -weight);
+  }
+  const MatrixX inverse = estimate.covariance * (scatter / estimate.variance_factor);
+  add_transposed_product(information, coupling, matrix_product(inverse, coupling), -1);
+  information += camera.own_information;
+  SharedStep out{-(camera.own_gradient + slope.col(0)), {}};
+  demand(cholesky(information), "calibrate_joints_by_camera: the images do not determine the intrinsics");
+  out.covariance = inverse_from_cholesky(information);
+  solve_cholesky(information, out.step);
+  return out;
+}
+
+/// Standard deviations of intrinsics and scale by a covariance of what images share.
+inline void state_std(const MatrixX& covariance, CameraReport& camera) {
+  Index at = 0;
+  for (std::size_t c = 0; c < camera.cameras.size(); ++c) {
+    std::vector<Index> row;  // of each intrinsic; below 0 for those that were held
+    for (Index k = 0; k < Camera::num_parameters; ++k) row.push_back(camera.camera_std[c](k) > 0 ? at++ : -1);
+    for (Index k = 0; k < Camera::num_parameters; ++k)
+      for (Index j = 0; j < Camera::num_parameters; ++j) {
+        const Index r = row[static_cast<std::size_t>(k)], s = row[static_cast<std::size_t>(j)];
+        if (r < 0 || s < 0) continue;
+        camera.camera_covariances[c](k, j) = covariance(r, s) * camera.shared_steps(r) * camera.shared_steps(s);
+        if (k == j) camera.camera_std[c](k) = std::sqrt(camera.camera_covariances[c](k, k));
+      }
+  }
+  if ((covariance.rows() - at) % 3 == 1)
+    camera.board_scale_std = std::sqrt(covariance(at, at)) * camera.shared_steps(at);
+}
+
+/// Intrinsics and shape of the board, moved.
+inline HeldCameras moved_cameras(const CameraReport& camera, const VectorX& step) {
+  HeldCameras out{camera.cameras, camera.held_shape};
+  Index at = 0;
+  for (std::size_t c = 0; c < out.cameras.size(); ++c) {
+    VectorX values = out.cameras[c].parameters();
+    for (Index k = 0; k < values.size(); ++k)
+      if (camera.camera_std[c](k) > 0) {
+        values(k) += step(at) * camera.shared_steps(at);
+        ++at;
+      }
+    out.cameras[c] = out.cameras[c].with_parameters(values);
+  }
+  const Index rest = step.size() - at;  // the scale, the bend, or both
+  for (Index k = rest % 3 == 1 ? 0 : 1; at < step.size(); ++k, ++at)
+    out.shape[static_cast<std::size_t>(k)] += step(at) * camera.shared_steps(at);
   return out;
 }
 
 }  // namespace detail
 
-/// Calibrates an arm with joint errors by a camera. The first round is `calibrate_by_camera`. Then joint errors are
-/// found from the poses that images show, and intrinsics, frames and geometry again with these errors held, until the
-/// intrinsics rest. Both fits minimise the same residuals of pixels, over unknowns that overlap in frames and geometry:
-/// where they rest, no unknown of either can improve them. What differs are the priors of links and the weights of
-/// wrong corners, which each fit chooses for itself.
-/// @param fit_joints joint errors of poses: `JointErrors(const Measurements<N>&)`. Tilts of joint frames are no errors
-/// of
-///                   joint values, so it must find none; called once a round
+/// Calibrates an arm with joint errors by a camera. The first round is `calibrate_by_camera`. Then joint errors, links
+/// and frames are fitted to the poses that images show. Intrinsics and the shape of the board take a Newton step of the
+/// least sum of squares over all of these unknowns, images show other poses, and so on, until the step is small against
+/// its standard deviation: there the gradient of the whole problem is zero. Poses stand for their corners by their
+/// covariances, which are computed again in each round. Which joint errors there are, their priors, and the weights of
+/// wrong corners are those of the last fit.
+/// @param fit_joints a fit to poses: `JointFit(const Measurements<N>&)`. Tilts of joint frames are no errors of joint
+///                   values, so it must find none; called once a round
 /// @param most       rounds
 /// @throws CalibrationFailure and DataError as `calibrate_by_camera` does
+/// @cite Golub and Pereyra 1973
 template <NominalArm Arm, class FitJoints>
 JointsByCamera<ChainOf<Arm>> calibrate_joints_by_camera(const Arm& arm, const Board& board, const CornerViews& views,
                                                         const ImageRows& rows, const CameraOptions& options,
-                                                        const FitJoints& fit_joints, int most = 5) {
+                                                        const FitJoints& fit_joints, int most = 6) {
   constexpr int N = ChainOf<Arm>::dof;
   JointsByCamera<ChainOf<Arm>> out{calibrate_by_camera(arm, board, views, rows, options), {}, {}};
   const CameraReport first = out.camera;
-  const CameraOptions again = detail::decided(options, first);
+  CameraOptions again = detail::decided(options, first);
   for (int round = 0;; ++round) {
     out.poses = measured_poses<N>(out.camera, rows);
-    out.errors = fit_joints(std::as_const(out.poses));
+    const JointFit fit = fit_joints(std::as_const(out.poses));
+    out.errors = fit.errors;
     demand(out.errors.empty() || !out.errors.tilts(), "calibrate_joints_by_camera: joint errors with tilts");
-    out.converged = out.errors.empty() || (!out.moved.empty() && out.moved.back() < 0.1);
+    if (out.camera.own_gradient.size() == 0) {  // nothing is shared
+      out.converged = true;
+      return out;
+    }
+    std::vector<std::vector<Isometry3>> seen(out.poses.poses().size());
+    for (std::size_t base = 0, s = 0; base < out.camera.in_base.size() && s < seen.size(); ++base) {
+      for (const ImagePose& pose : out.camera.poses)
+        if (pose.base == static_cast<Index>(base)) seen[s].push_back(pose.pose);
+      if (!seen[s].empty()) ++s;
+    }
+    const detail::SharedStep step =
+        detail::shared_step(fit.estimate, shared_errors(out.camera, rows), seen, out.camera, options.loss);
+    double largest = 0;
+    for (Index k = 0; k < step.step.size(); ++k)
+      largest = (std::max)(largest, std::abs(step.step(k)) / std::sqrt(step.covariance(k, k)));
+    out.moved.push_back(largest);
+    out.converged = largest < 0.1;
+    out.camera.shared_covariance = step.covariance;
+    detail::state_std(step.covariance, out.camera);
     if (out.converged || round == most) return out;
+    again.held = detail::moved_cameras(out.camera, step.step);
     ImageRows effective = rows;
-    effective.joints = out.errors.effective_rows(rows.joints);
+    effective.joints = out.errors.empty() ? rows.joints : out.errors.effective_rows(rows.joints);
     auto next = calibrate_by_camera(arm, board, views, effective, again);
-    out.moved.push_back(detail::change_of_intrinsics(out.camera, next));
     next.blocks = first.blocks;
     next.left_out_mean = first.left_out_mean;
     next.left_out_max = first.left_out_max;

@@ -150,15 +150,19 @@ inline SharedStep shared_step(const ErrorModelEstimate& estimate, const std::vec
   const double limit = robust_threshold(norms, 3);
   const double scatter = (std::max)(1.0, estimate.residual_variance);  // of poses about the arm
   MatrixX information = MatrixX::Zero(shared, shared), coupling = MatrixX::Zero(arm.size(), shared),
-          slope = MatrixX::Zero(shared, 1);
+          slope = MatrixX::Zero(shared, 1), normal = MatrixX::Zero(arm.size(), arm.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double weight = (limit > 0 ? robust_weight(loss, norms[i], limit) : 1) / scatter;
     add_transposed_product(information, effects[i], effects[i], weight);
     add_transposed_product(coupling, rows[i], effects[i], weight);
+    add_transposed_product(normal, rows[i], rows[i], weight);
     add_transposed_product(slope, effects[i], residuals[i], -weight);
   }
-  const MatrixX inverse = estimate.covariance * (scatter / estimate.variance_factor);
-  add_transposed_product(information, coupling, matrix_product(inverse, coupling), -1);
+  const VectorX precisions = arm.precisions();
+  for (Index k = 0; k < arm.size(); ++k) normal(k, k) += precisions(k) / scatter + 1e-9 * (1 + normal(k, k));
+  demand(cholesky(normal), "calibrate_joints_by_camera: the poses do not determine the arm");
+  solve_lower(normal, coupling);
+  add_transposed_product(information, coupling, coupling, -1);  // what the arm absorbs
   information += camera.own_information;
   SharedStep out{-(camera.own_gradient + slope.col(0)), {}};
   demand(cholesky(information), "calibrate_joints_by_camera: the images do not determine the intrinsics");
@@ -204,10 +208,18 @@ inline HeldCameras moved_cameras(const CameraReport& camera, const VectorX& step
   return out;
 }
 
+/// Rows at the joint values that joint errors make of them.
+inline ImageRows with_joint_errors(ImageRows rows, const JointErrors& errors) {
+  demand(errors.empty() || !errors.tilts(), "calibrate_joints_by_camera: joint errors with tilts");
+  if (!errors.empty()) rows.joints = errors.effective_rows(rows.joints);
+  return rows;
+}
+
 }  // namespace detail
 
-/// Calibrates an arm with joint errors by a camera. The first round is `calibrate_by_camera`. Then joint errors, links
-/// and frames are fitted to the poses that images show. Intrinsics and the shape of the board take a Newton step of the
+/// Calibrates an arm with joint errors by a camera. `calibrate_by_camera` comes first, without joint errors and
+/// then with those of a first fit, where left-out images decide. Then joint errors, links and frames are fitted to the
+/// poses that images show. Intrinsics and the shape of the board take a Newton step of the
 /// least sum of squares over all of these unknowns, images show other poses, and so on, until the step is small against
 /// its standard deviation: there the gradient of the whole problem is zero. Poses stand for their corners by their
 /// covariances, which are computed again in each round. Which joint errors there are, their priors, and the weights of
@@ -222,14 +234,22 @@ JointsByCamera<ChainOf<Arm>> calibrate_joints_by_camera(const Arm& arm, const Bo
                                                         const ImageRows& rows, const CameraOptions& options,
                                                         const FitJoints& fit_joints, int most = 6) {
   constexpr int N = ChainOf<Arm>::dof;
-  JointsByCamera<ChainOf<Arm>> out{calibrate_by_camera(arm, board, views, rows, options), {}, {}};
+  CameraOptions rough = options;  // errors of the joints hide what left-out images would decide on
+  rough.choose = rough.left_out = false;
+  ImageRows effective = rows;
+  const auto with_errors = [&](const CameraOptions& now) {
+    return calibrate_by_camera(arm, board, views, effective, now);
+  };
+  JointsByCamera<ChainOf<Arm>> out{with_errors(rough), {}, {}};
+  effective = detail::with_joint_errors(rows, fit_joints(measured_poses<N>(out.camera, rows)).errors);
+  out.camera = with_errors(options);
   const CameraReport first = out.camera;
   CameraOptions again = detail::decided(options, first);
   for (int round = 0;; ++round) {
     out.poses = measured_poses<N>(out.camera, rows);
     const JointFit fit = fit_joints(std::as_const(out.poses));
     out.errors = fit.errors;
-    demand(out.errors.empty() || !out.errors.tilts(), "calibrate_joints_by_camera: joint errors with tilts");
+    effective = detail::with_joint_errors(rows, out.errors);
     if (out.camera.own_gradient.size() == 0) {  // nothing is shared
       out.converged = true;
       return out;
@@ -251,9 +271,7 @@ JointsByCamera<ChainOf<Arm>> calibrate_joints_by_camera(const Arm& arm, const Bo
     detail::state_std(step.covariance, out.camera);
     if (out.converged || round == most) return out;
     again.held = detail::moved_cameras(out.camera, step.step);
-    ImageRows effective = rows;
-    effective.joints = out.errors.empty() ? rows.joints : out.errors.effective_rows(rows.joints);
-    auto next = calibrate_by_camera(arm, board, views, effective, again);
+    auto next = with_errors(again);
     next.blocks = first.blocks;
     next.left_out_mean = first.left_out_mean;
     next.left_out_max = first.left_out_max;

@@ -241,7 +241,7 @@ TEST_F(CalibrateContacts, DistancesAloneCalibrate) {
       << result.output;
   const auto json = nlohmann::json::parse(read_file(folder_ / "out.json"));
   const auto& stages = json.at("stages");
-  EXPECT_GT(stages.at(0).at("position_mm").at("mean"), 0.3) << stages;
+  EXPECT_GT(stages.at("frames").at("mean_mm"), 0.3) << stages;
   const auto robot = load<6>(folder_ / "model.json");
   EXPECT_EQ(robot.provenance().measured, "distances");
   EXPECT_EQ(robot.provenance().rows, 180);

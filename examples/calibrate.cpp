@@ -89,8 +89,13 @@ void print_camera(const support::CameraJoints& found) {
   if (found.moved.empty()) return;
   std::string moved;
   for (const double one : found.moved) moved += fmt::format("{}{:.2f}", moved.empty() ? "" : ", ", one);
-  fmt::print("Beside joint errors, steps of the intrinsics were {} standard deviations{}\n\n", moved,
+  fmt::print("Beside joint errors, steps of the intrinsics were {} standard deviations{}\n", moved,
              found.converged ? "; they rest" : "; THEY DO NOT REST: take more images, or state --intrinsics");
+  fmt::print(
+      "Errors below are of single images, whose own poses err by {:.3f} mm (rms). On the board left-out images are off "
+      "by "
+      "{:.3f} mm\n\n",
+      found.image_error * 1e3, found.camera.left_out_mean * 1e3);
 }
 
 /// Prints, draws and writes what was found.
@@ -125,6 +130,7 @@ int report_calibration(support::Program& program, const vn::RobotDescription& ro
     json["camera"] = support::camera_json(camera->camera);
     json["camera"]["moved_in_rounds"] = camera->moved;
     json["camera"]["converged"] = camera->converged;
+    json["camera"]["error_of_images_mm"] = camera->image_error * 1e3;
   }
   for (const vn::DataAudit& audit : found.audits) json["audit"].push_back(vn::to_json(audit));
   if (!program.common().json.empty()) support::write_json(program.common().json, json);

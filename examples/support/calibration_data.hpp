@@ -32,6 +32,7 @@ struct MeasuredFiles {
   vernier::Measurements<N> test;            ///< held-out poses, stations as in `train`
   std::string held_out;                     ///< which poses those are, in words
   std::vector<vernier::ReportFile> inputs;  ///< all files that were read
+  double camera_error = 0;                  ///< mean distance on the board at left-out images [m]; 0 without images
   std::optional<vernier::CameraSetup> camera{};  ///< that saw the poses, where images show them
   /// Covariance of a fit with errors that its poses share, as those of one camera do; none where they share none.
   std::function<vernier::MatrixX(const vernier::ErrorModelEstimate&)> covariance{};

@@ -2,6 +2,7 @@
 #include "camera_joints.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -76,6 +77,14 @@ CameraJoints calibrate_arm(const vn::RobotDescription& description, const Calibr
       });
   MeasuredFiles<N> measured = split(found.poses);
   measured.camera = setup_of(found.camera);
+  measured.camera_error = found.camera.left_out_mean;
+  double square = 0, held_out = 0;
+  for (const vn::Dataset<N>& test : measured.test.poses())
+    for (const vn::Matrix6& covariance : test.covariances()) {
+      for (vn::Index k = 0; k < 3; ++k) square += covariance(k, k);
+      ++held_out;
+    }
+  const double image_error = std::sqrt(square / std::max(held_out, 1.0));
   const std::vector<vn::SharedErrors> shared =
       of_training<N>(vn::shared_errors(found.camera, rows), rows, found.camera, measured);
   measured.covariance = [shared, common = found.camera.shared_covariance](const vn::ErrorModelEstimate& estimate) {
@@ -83,7 +92,7 @@ CameraJoints calibrate_arm(const vn::RobotDescription& description, const Calibr
   };
   measured.held_out += "; images held out have their share in the intrinsics";
   return {calibrate_measured<N>(description, o, fit, std::make_shared<const MeasuredFiles<N>>(std::move(measured))),
-          found.camera, found.moved, found.converged};
+          found.camera, found.moved, found.converged, image_error};
 }
 
 }  // namespace

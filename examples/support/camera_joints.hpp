@@ -16,6 +16,7 @@ struct CameraJoints {
   vernier::CameraReport camera;
   std::vector<double> moved{};  ///< how far each round moved the intrinsics, in standard deviations
   bool converged = false;
+  double image_error = 0;  ///< of the held-out poses by their own images, root mean square [m]
 };
 
 /// Reads corners, board and joints; finds intrinsics, geometry and joint errors in turn until they rest, and assesses

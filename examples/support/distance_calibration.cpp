@@ -139,7 +139,7 @@ int calibrate_arm(Program& program, const vn::RobotDescription& description, con
   for (std::size_t s = 0; s < measured.train.size(); ++s) {
     const vn::Measurements<N> wire(measured.train[s]);
     const auto registered = vn::identify(robot.arm, wire, frames, options.sensors, vn::own_solver);
-    vn::detail::require_plausible(vn::ArmGeometry(robot.arm), wire.sets().front(), registered.rms_after, robot.name);
+    vn::detail::require_plausible_set(vn::ArmGeometry(registered.model.identified()), wire.sets().front());
     designed.push_back(registered.model.identified());
     train.add(measured.train[s], o.distances[s]);
   }

@@ -90,12 +90,13 @@ vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, cons
 template <int N>
 std::string save_station(const std::string& path, const vn::Calibration<vn::DhChain<N>>& calibration,
                          const vn::RobotInfo<N>& info, std::size_t station,
-                         const std::optional<vn::CameraSetup>& camera) {
+                         const std::optional<vn::CameraSetup>& camera, double camera_error) {
   if (!camera) return vn::save(path, calibration, info, station);
   const vn::CalibratedRobot<N> robot = vn::calibrated_robot(calibration, info, station);
   vn::Provenance from = robot.provenance();
   from.measured = "images";
   from.camera = camera;
+  from.held_out_error = camera_error;  // without the noise of single images
   return vn::save(path, robot.with_model(robot.model(), std::move(from)));
 }
 
@@ -141,10 +142,11 @@ PoseCalibration calibrate_measured(const vn::RobotDescription& description, cons
                             .data_sha256 = file_hashes<N>(measured->files),
                             .controller = robot.controller};
   };
-  if (!o.save.empty()) out.model = {o.save, save_station<N>(o.save, calibration, info_of(0), 0, measured->camera)};
+  if (!o.save.empty())
+    out.model = {o.save, save_station<N>(o.save, calibration, info_of(0), 0, measured->camera, measured->camera_error)};
   for (std::size_t s = 1; !o.save.empty() && own_tools && s < out.sets.size(); ++s) {
     out.further_models.push_back(numbered(o.save, s + 1));
-    save_station<N>(out.further_models.back(), calibration, info_of(s), s, measured->camera);
+    save_station<N>(out.further_models.back(), calibration, info_of(s), s, measured->camera, measured->camera_error);
   }
   if (!o.report.empty()) {
     out.page = calibration_page(out.report, o, robot, *measured);

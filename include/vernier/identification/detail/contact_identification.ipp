@@ -2,8 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -80,9 +80,10 @@ VERNIER_LOCAL void size_change(ContactProblem& contacts) {
     const double prior_cost = problem.prior ? problem.prior->cost(problem.arm.steps()) : 0;
     const Index freedom = rows.residuals.size() + (problem.prior ? problem.prior->unknowns : 0) - none.size();
     if (freedom > 0) contacts.variance = (rows.residuals.squaredNorm() + prior_cost) / static_cast<double>(freedom);
-    double highest = -std::numeric_limits<double>::infinity();
-    for (const double change : {0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2}) {
-      at_change(change);
+    constexpr std::array changes{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0};
+    std::array<double, changes.size()> evidences{};
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+      at_change(changes[k]);
       const ContactProblem::KnownUnknowns known = contacts.known_unknowns();
       if (known.unknowns.empty()) return;
       MatrixX factor = known.covariance;
@@ -90,12 +91,14 @@ VERNIER_LOCAL void size_change(ContactProblem& contacts) {
       const NormalEquations normal = problem.normal_equations();
       const VectorX precisions = problem.arm.precisions(), steps = problem.arm.steps();
       const FactorisedEquations solved(normal, precisions, steps);
-      const double evidence = log_evidence(normal, solved, precisions, steps, problem.measured_values()) -
-                              0.5 * cholesky_log_determinant(factor);
-      if (!(evidence > highest)) continue;
-      highest = evidence;
-      best = change;
+      evidences[k] = log_evidence(normal, solved, precisions, steps, problem.measured_values()) -
+                     0.5 * cholesky_log_determinant(factor);
     }
+    constexpr double believed = 2;  // by how much the evidence of a larger change must be more, as a logarithm
+    const double highest = *std::max_element(evidences.begin(), evidences.end());
+    const auto first = std::find_if(evidences.begin(), evidences.end(),
+                                    [&](double evidence) { return evidence >= highest - believed; });
+    if (first != evidences.end()) best = changes[static_cast<std::size_t>(first - evidences.begin())];
   }
   at_change(best);
 }

@@ -48,8 +48,9 @@ struct SharedErrors {
 /// @param estimate of a fit
 /// @param stations poses that it was fitted to, one set a station
 /// @param common   covariance of the common errors
-inline MatrixX covariance_with_shared_errors(const ErrorModelEstimate& estimate,
-                                             const std::vector<SharedErrors>& stations, const MatrixX& common) {
+VERNIER_API inline MatrixX covariance_with_shared_errors(const ErrorModelEstimate& estimate,
+                                                         const std::vector<SharedErrors>& stations,
+                                                         const MatrixX& common) {
   const ArmParameterisation& arm = estimate.arm;
   MatrixX out = estimate.covariance;
   if (common.size() == 0 || out.size() == 0) return out;
@@ -77,7 +78,7 @@ inline MatrixX covariance_with_shared_errors(const ErrorModelEstimate& estimate,
 }
 
 /// The errors that the poses of all images share, one set for each of `measured_poses`.
-inline std::vector<SharedErrors> shared_errors(const CameraReport& report, const ImageRows& rows) {
+VERNIER_API inline std::vector<SharedErrors> shared_errors(const CameraReport& report, const ImageRows& rows) {
   std::vector<SharedErrors> out;
   for (std::size_t base = 0; base < report.in_base.size(); ++base) {
     std::vector<Index> here;
@@ -121,8 +122,9 @@ struct SharedStep {
 /// and their poses about an arm that moves along.
 /// @param estimate of the arm, fitted to the poses of `stations`
 /// @param seen     those poses
-inline SharedStep shared_step(const ErrorModelEstimate& estimate, const std::vector<SharedErrors>& stations,
-                              const std::vector<std::vector<Isometry3>>& seen, const CameraReport& camera, Loss loss) {
+VERNIER_API inline SharedStep shared_step(const ErrorModelEstimate& estimate, const std::vector<SharedErrors>& stations,
+                                          const std::vector<std::vector<Isometry3>>& seen, const CameraReport& camera,
+                                          Loss loss) {
   const ArmParameterisation& arm = estimate.arm;
   const Index shared = camera.own_gradient.size();
   std::vector<MatrixX> rows, effects, residuals;  // whitened
@@ -172,7 +174,7 @@ inline SharedStep shared_step(const ErrorModelEstimate& estimate, const std::vec
 }
 
 /// Standard deviations of intrinsics and scale by a covariance of what images share.
-inline void state_std(const MatrixX& covariance, CameraReport& camera) {
+VERNIER_API inline void state_std(const MatrixX& covariance, CameraReport& camera) {
   Index at = 0;
   for (std::size_t c = 0; c < camera.cameras.size(); ++c) {
     std::vector<Index> row;  // of each intrinsic; below 0 for those that were held
@@ -190,7 +192,7 @@ inline void state_std(const MatrixX& covariance, CameraReport& camera) {
 }
 
 /// Intrinsics and shape of the board, moved.
-inline HeldCameras moved_cameras(const CameraReport& camera, const VectorX& step) {
+VERNIER_API inline HeldCameras moved_cameras(const CameraReport& camera, const VectorX& step) {
   HeldCameras out{camera.cameras, camera.held_shape};
   Index at = 0;
   for (std::size_t c = 0; c < out.cameras.size(); ++c) {
@@ -209,7 +211,7 @@ inline HeldCameras moved_cameras(const CameraReport& camera, const VectorX& step
 }
 
 /// Rows at the joint values that joint errors make of them.
-inline ImageRows with_joint_errors(ImageRows rows, const JointErrors& errors) {
+VERNIER_API inline ImageRows with_joint_errors(ImageRows rows, const JointErrors& errors) {
   demand(errors.empty() || !errors.tilts(), "calibrate_joints_by_camera: joint errors with tilts");
   if (!errors.empty()) rows.joints = errors.effective_rows(rows.joints);
   return rows;

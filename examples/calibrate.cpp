@@ -11,9 +11,11 @@
 #include "calibration_figures.hpp"
 #include "calibration_options.hpp"
 #include "camera_calibration.hpp"
+#include "camera_joints.hpp"
 #include "cli.hpp"
 #include "console.hpp"
 #include "contact_calibration.hpp"
+#include "distance_calibration.hpp"
 #include "json_file.hpp"
 #include "parameter_table.hpp"
 #include "pose_calibration.hpp"
@@ -28,8 +30,10 @@ namespace {
 
 namespace vn = vernier;
 
-support::PoseCalibration calibrate_with_progress(const support::Program& program, const vn::RobotDescription& robot,
-                                                 support::CalibrationOptions& o) {
+/// Calls a calibration with the options of a fit that shows how far it is.
+template <class F>
+auto calibrate_with_progress(const support::Program& program, const vn::RobotDescription& robot,
+                             support::CalibrationOptions& o, const F& calibrate) {
   o.calibrate.arm_name = robot.name;
   o.calibrate.remainder.on_geometry = true;
   const int swarms = 2 * (o.calibrate.remainder.iterations + 1);
@@ -43,8 +47,7 @@ support::PoseCalibration calibrate_with_progress(const support::Program& program
     searching->update(++generations);
   };
   const vn::ThreadExecutor executor(program.common().threads);
-  return support::calibrate_from_poses(robot, o,
-                                       {.seed = program.common().seed, .executor = executor, .observer = count});
+  return calibrate(robot, o, vn::FitOptions{.seed = program.common().seed, .executor = executor, .observer = count});
 }
 
 /// The verdict and the table of stages. On a terminal their title and the row of the deployed stage stand out.
@@ -81,12 +84,27 @@ void print_reflectors(const std::vector<support::FoundReflector>& reflectors) {
                one.offset.y() * 1e3, one.offset.z() * 1e3, one.std.x() * 1e3, one.std.y() * 1e3, one.std.z() * 1e3);
 }
 
-int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o) {
-  program.require_output_folder();
-  const vn::RobotDescription robot = support::choose_robot(o.robot);
-  o.csv.controller = robot.controller;
-  support::PoseCalibration found = calibrate_with_progress(program, robot, o);
+void print_camera(const support::CameraJoints& found) {
+  fmt::print("{}\n", support::camera_text(found.camera));
+  if (found.moved.empty()) return;
+  std::string moved;
+  for (const double one : found.moved) moved += fmt::format("{}{:.2f}", moved.empty() ? "" : ", ", one);
+  fmt::print("Beside joint errors, steps of the intrinsics were {} standard deviations{}\n", moved,
+             found.converged ? "; they rest" : "; THEY DO NOT REST: take more images, or state --intrinsics");
+  fmt::print(
+      "Errors below are of single images, whose own poses err by {:.3f} mm (rms). On the board left-out images are off "
+      "by "
+      "{:.3f} mm\n\n",
+      found.image_error * 1e3, found.camera.left_out_mean * 1e3);
+}
+
+/// Prints, draws and writes what was found.
+/// @param camera what images told of the camera; null where there were none
+int report_calibration(support::Program& program, const vn::RobotDescription& robot,
+                       const support::CalibrationOptions& o, support::PoseCalibration& found,
+                       const support::CameraJoints* camera) {
   const vn::CalibrationReport& report = found.report;
+  if (camera != nullptr) print_camera(*camera);
   fmt::print("{}\n", verdict_of(report));
   print_measurements(robot, o, found);
   print_reflectors(found.reflectors);
@@ -108,6 +126,12 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
                                   {"rows", one.rows},
                                   {"offset_mm", {one.offset.x() * 1e3, one.offset.y() * 1e3, one.offset.z() * 1e3}},
                                   {"std_mm", {one.std.x() * 1e3, one.std.y() * 1e3, one.std.z() * 1e3}}});
+  if (camera != nullptr) {
+    json["camera"] = support::camera_json(camera->camera);
+    json["camera"]["moved_in_rounds"] = camera->moved;
+    json["camera"]["converged"] = camera->converged;
+    json["camera"]["error_of_images_mm"] = camera->image_error * 1e3;
+  }
   for (const vn::DataAudit& audit : found.audits) json["audit"].push_back(vn::to_json(audit));
   if (!program.common().json.empty()) support::write_json(program.common().json, json);
   if (!o.report.empty()) {
@@ -117,6 +141,7 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
   }
   const std::filesystem::path folder = program.output_folder();
   support::draw_calibration(folder, robot.name, report);
+  if (camera != nullptr) support::draw_cameras(folder, camera->camera);
   fmt::print("\n");
   if (!o.verbose)
     fmt::print("Details behind the verdict: --verbose; frames and links: --parameters; all of it: --report FILE\n");
@@ -128,15 +153,29 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
   return 0;
 }
 
+int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o) {
+  program.require_output_folder();
+  const vn::RobotDescription robot = support::choose_robot(o.robot);
+  o.csv.controller = robot.controller;
+  if (o.corners.empty()) {
+    support::PoseCalibration found =
+        calibrate_with_progress(program, robot, o, [](auto&&... all) { return support::calibrate_from_poses(all...); });
+    return report_calibration(program, robot, o, found, nullptr);
+  }
+  support::CameraJoints found = calibrate_with_progress(
+      program, robot, o, [](auto&&... all) { return support::calibrate_joints_by_camera(all...); });
+  return report_calibration(program, robot, o, found.poses, &found);
+}
+
 int run(support::Program& program) {
   support::CalibrationOptions o = support::read_calibration_options(program);
   if (o.reregister) return support::reregister_model(program, o);
-  if (!o.corners.empty()) return support::calibrate_by_camera(program, o);
+  if (!o.corners.empty() && !o.joint_errors) return support::calibrate_by_camera(program, o);
   if (o.data.empty()) {
     const vn::RobotDescription robot = support::choose_robot(o.robot);
     o.csv.controller = robot.controller;
-    return support::calibrate_by_contacts(program, robot, o.contacts, o.csv.format(), o.calibrate.geometry,
-                                          o.calibrate.sensors, o.save, o.date);
+    return o.contacts.empty() ? support::calibrate_by_distances(program, robot, o)
+                              : support::calibrate_by_contacts(program, robot, o);
   }
   return calibrate_by_poses(program, o);
 }

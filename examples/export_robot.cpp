@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Measured poses in; the arm's calibrated geometry out, as its URDF file or as the kinematics file of Universal Robots'
-// driver, with what it loses against the full model.
+// Measured poses or touches in; the arm's calibrated geometry out, as its URDF file or as the kinematics file of
+// Universal Robots' driver, with what it loses against the full model.
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <optional>
 #include <utility>
 
 #include "cli.hpp"
+#include "contact_calibration.hpp"
 #include "csv_options.hpp"
 #include "file_name.hpp"
 #include "json_file.hpp"
@@ -25,8 +27,10 @@ struct Settings {
   support::RobotOptions robot;
   support::CsvOptions csv;
   support::SensorOptions sensor;
-  std::string data, urdf, ur_kinematics, ur_hash = "calib_unknown", date;
+  std::string data, contacts, urdf, ur_kinematics, ur_hash = "calib_unknown", date;
   vn::Index test_every = 5;
+  bool holds_out = false;
+  double contact_sigma_mm = 0.03;
   bool with_base = false, with_tool = false, positions_only = false;
 };
 
@@ -37,14 +41,23 @@ struct ExportedFile {
 };
 
 struct Outcome {
-  vn::CalibrationReport report;
-  std::vector<ExportedFile> files;
-  vn::ErrorStatistics designed, full;  ///< errors of held-out poses, as designed and by the chosen stage [m]
+  vn::Index learned = 0;     ///< poses or touches that it was fitted to
+  vn::Index assessed = 0;    ///< those that errors are of
+  std::string rule{};        ///< which those are, in words
+  bool held_out = true;      ///< whether they are others
+  std::string what{};        ///< what they are: poses, touches
+  std::string full_model{};  ///< key of the chosen stage
+  std::vector<ExportedFile> files{};
+  vn::ErrorStatistics designed{}, full{};  ///< errors as designed and by the chosen stage [m]
 };
 
 support::CalibrationOptions calibration_options(const Settings& o, const vn::RobotDescription& robot) {
   support::CalibrationOptions out;
-  out.data = {o.data};
+  if (!o.data.empty()) out.data = {o.data};
+  out.contacts = o.contacts;
+  out.holds_out = o.holds_out;
+  out.calibrate.sensors.contact_sigma = o.contact_sigma_mm * 1e-3;
+  if (!o.contacts.empty()) out.calibrate.sensors.loss = vn::Loss::huber;
   out.csv = o.csv;
   out.csv.controller = robot.controller;
   out.test_every = o.test_every;
@@ -56,20 +69,60 @@ support::CalibrationOptions calibration_options(const Settings& o, const vn::Rob
   return out;
 }
 
+/// An arm that was calibrated, and how well other descriptions of it do.
+struct Calibrated {
+  vn::ArmGeometry nominal, identified;
+  std::function<vn::ErrorStatistics(const vn::RobotDescription&)> error_of;
+  Outcome outcome;  ///< without files
+};
+
+Calibrated by_poses(const Settings& o, const vn::RobotDescription& robot, const vn::FitOptions& fit) {
+  support::PoseCalibration found = support::calibrate_from_poses(robot, calibration_options(o, robot), fit);
+  const vn::CalibrationReport& report = found.report;
+  return {found.nominal,
+          found.identified,
+          std::move(found.error_of),
+          {.learned = report.train_poses,
+           .assessed = report.test_poses(),
+           .rule = fmt::format("every row i with i % {} = 0, counted from 0", o.test_every),
+           .what = "poses",
+           .full_model = report.chosen.key(),
+           .designed = vn::ErrorStatistics::of(report.stage(vn::Stage::frames).position),
+           .full = vn::ErrorStatistics::of(report.stage(report.chosen).position)}};
+}
+
+Calibrated by_contacts(const Settings& o, const vn::RobotDescription& robot, const vn::FitOptions& fit) {
+  support::ContactCalibration found = support::identify_from_contacts(robot, calibration_options(o, robot), fit.seed);
+  const vn::VectorX errors = support::touch_errors(found.found);
+  return {found.nominal,
+          found.identified,
+          std::move(found.error_of),
+          {.learned = found.touches,
+           .assessed = errors.size(),
+           .rule = found.held_out,
+           .held_out = !found.held_out.empty(),
+           .what = "touches",
+           .full_model = "geometry",
+           .designed = vn::ErrorStatistics::of(support::touch_errors(found.designed)),
+           .full = vn::ErrorStatistics::of(errors)}};
+}
+
 Outcome export_arm(const Settings& o, const vn::RobotDescription& robot, const std::optional<vn::UrdfChain>& chain,
                    const vn::FitOptions& fit) {
-  const support::PoseCalibration calibration = support::calibrate_from_poses(robot, calibration_options(o, robot), fit);
-  const vn::CalibrationReport& report = calibration.report;
-
-  Outcome out;
-  out.report = report;
-  out.designed = vn::ErrorStatistics::of(report.stage(vn::Stage::frames).position);
-  out.full = vn::ErrorStatistics::of(report.stage(report.chosen).position);
+  const Calibrated calibration = o.contacts.empty() ? by_poses(o, robot, fit) : by_contacts(o, robot, fit);
+  Outcome out = calibration.outcome;
   const vn::ArmGeometry &nominal = calibration.nominal, &identified = calibration.identified;
   const vn::ArmGeometry geometry = identified.with_frames(o.with_base ? identified.base() : nominal.base(),
                                                           o.with_tool ? identified.tool() : nominal.tool());
-  vn::ExportNote note{robot.name, support::file_name(o.data), o.date, report.train_poses, report.chosen.key(), out.full,
-                      {}};
+  vn::ExportNote note{.robot = robot.name,
+                      .data = support::file_name(o.contacts.empty() ? o.data : o.contacts),
+                      .date = o.date,
+                      .fitted_poses = out.learned,
+                      .full_model = out.full_model,
+                      .error_full = out.full,
+                      .error_exported = {},
+                      .what = out.what,
+                      .held_out = out.held_out};
   if (!o.urdf.empty()) {
     const auto as_file = [&] { return vn::export_urdf(*chain, geometry, note); };
     note.error_exported =
@@ -86,15 +139,17 @@ Outcome export_arm(const Settings& o, const vn::RobotDescription& robot, const s
 }
 
 void print(const Settings& o, const vn::RobotDescription& robot, const Outcome& out) {
-  fmt::print("{}: {} joints\n{} poses to learn from, {} held out: every row i with i % {} = 0, counted from 0\n\n",
-             robot.name, robot.dof(), out.report.train_poses, out.report.test_poses(), o.test_every);
-  fmt::print("{:<42} {:>8} {:>8} {:>8}\n", "Position errors of held-out poses [mm]", "mean", "95 %", "max");
+  fmt::print("{}: {} joints\n{} {} to learn from", robot.name, robot.dof(), out.learned, out.what);
+  if (out.held_out) fmt::print(", {} held out: {}", out.assessed, out.rule);
+  fmt::print("\n\n{:<42} {:>8} {:>8} {:>8}\n",
+             fmt::format("Position errors of {}{} [mm]", out.held_out ? "held-out " : "these ", out.what), "mean",
+             "95 %", "max");
   const auto row = [](const std::string& name, const vn::ErrorStatistics& e) {
     fmt::print("{:<42} {:>8.3f} {:>8.3f} {:>8.3f}\n", name, e.mean * 1e3, e.p95 * 1e3, e.max * 1e3);
   };
   row("as designed", out.designed);
   for (const ExportedFile& file : out.files) row(support::shown(file.path), file.error);
-  row(fmt::format("full model ({})", out.report.chosen.key()), out.full);
+  row(fmt::format("full model ({})", out.full_model), out.full);
   const double exported = out.files.front().error.mean;
   if (out.full.mean < 0.9 * exported)
     fmt::print(
@@ -103,10 +158,10 @@ void print(const Settings& o, const vn::RobotDescription& robot, const Outcome& 
         exported / out.full.mean);
   fmt::print(
       "\nThe base frame is {}, the tool frame is {}. Base and tool of these errors are registered by the training "
-      "poses.\nWho uses these files must not be sent commands corrected by the full model: they would be "
+      "{}.\nWho uses these files must not be sent commands corrected by the full model: they would be "
       "corrected twice.\n",
       o.with_base ? "the fitted one, that of the sensor" : "as it was",
-      o.with_tool ? "the fitted one, what was measured" : "as it was");
+      o.with_tool ? "the fitted one, what was measured" : "as it was", out.what);
   if (!o.ur_kinematics.empty())
     fmt::print("{}: hash {}; the controller keeps its own calibration, and computes joint values by that.\n",
                support::shown(o.ur_kinematics), o.ur_hash);
@@ -121,13 +176,23 @@ int run(support::Program& program) {
   Settings o;
   o.date = support::today();
   o.robot.add_to(program).required();
-  program.add_option("--data", o.data, "measured poses, columns as for calibrate", "FILE").required();
+  support::Option data = program.add_option("--data", o.data, "measured poses, columns as for calibrate", "FILE")
+                             .required_without("--contacts");
+  const support::Option contacts = program.add_option(
+      "--contacts", o.contacts, "touches of objects in place of poses, columns as for calibrate", "FILE");
+  data.excludes(contacts);
+  program.add_setting("--contact-sigma", o.contact_sigma_mm, "standard deviation of a touch [mm]", "MM")
+      .within(1e-6, 1e3)
+      .needs(contacts);
   o.csv.add_to(program);
   o.csv.add_euler_to(program);
   o.sensor.add_to(program);
   program.add_flag("--positions-only", o.positions_only, "ignore measured orientations");
   program.group(support::Group::validation);
-  program.add_setting("--test-every", o.test_every, "hold out every K-th row of the data", "K").within(2, 1000000);
+  program
+      .add_setting("--test-every", o.test_every,
+                   "hold out every K-th row of the data; of contacts every K-th object, and none by default", "K")
+      .within(2, 1000000);
   program.group(support::Group::output);
   program.add_output("--urdf", o.urdf,
                      "write the file of --robot (URDF) with the calibrated origins of its joints to this file");
@@ -146,6 +211,13 @@ int run(support::Program& program) {
   program.parse("", nullptr);
   o.sensor.note(program);
 
+  o.holds_out = program.given("--test-every");
+  if (o.data.empty() == o.contacts.empty()) throw support::UsageError("--data is required (or --contacts)");
+  for (const char* of_poses : {"--positions-only", "--position-sigma", "--orientation-sigma"})
+    if (!o.contacts.empty() && program.given(of_poses))
+      throw support::UsageError(std::string(of_poses) + " needs --data");
+  if (!o.contacts.empty() && o.with_base)
+    throw support::UsageError("--with-base: contacts do not show where the base stands");
   if (o.urdf.empty() && o.ur_kinematics.empty())
     throw support::UsageError("nothing to write: one of --urdf and --ur-kinematics is required");
   if (!o.urdf.empty() && !o.robot.is_urdf())
@@ -174,9 +246,9 @@ int run(support::Program& program) {
   print(o, robot, out);
   if (!program.common().json.empty()) {
     support::Json json{{"robot", robot.name},
-                       {"train_rows", out.report.train_poses},
-                       {"test_rows", out.report.test_poses()},
-                       {"chosen", out.report.chosen.key()},
+                       {"train_rows", out.learned},
+                       {"test_rows", out.held_out ? out.assessed : 0},
+                       {"chosen", out.full_model},
                        {"as_designed", to_json(out.designed)},
                        {"full", to_json(out.full)},
                        {"files", support::Json::array()}};

@@ -96,6 +96,25 @@ vn::Split<N> split_station(const vn::Dataset<N>& file, const CalibrationOptions&
   return out;
 }
 
+/// Names of sets of poses, where each was measured from, and which reflector.
+struct SetNames {
+  std::vector<std::string> names, places, points;
+};
+
+/// Adds training and held-out poses, no pose among both.
+template <int N>
+void add_split(MeasuredFiles<N>& out, std::vector<vn::Split<N>>& stations, const SetNames& sets,
+               const CalibrationOptions& o, const vn::SamePose& same) {
+  const std::string advice = o.test.empty() ? "" : "; --test needs poses that --data has not";
+  if (const vn::Index apart = keep_poses_apart(stations, sets.names, advice, same); apart > 0)
+    out.held_out += fmt::format("; {} training row{} at held-out poses {} left out", apart, apart == 1 ? "" : "s",
+                                apart == 1 ? "is" : "are");
+  for (std::size_t s = 0; s < stations.size(); ++s) {
+    out.train.add(vn::readings_joined(stations[s].train, same), sets.names[s], sets.places[s], sets.points[s]);
+    out.test.add(std::move(stations[s].test), sets.names[s], sets.places[s], sets.points[s]);
+  }
+}
+
 }  // namespace
 
 template <int N>
@@ -136,14 +155,7 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
       stations.push_back(split_station(one.poses, o, out.names.back(), test, types, seed, out.held_out));
     }
   }
-  const std::string advice = o.test.empty() ? "" : "; --test needs poses that --data has not";
-  if (const vn::Index apart = keep_poses_apart(stations, out.names, advice, same); apart > 0)
-    out.held_out += fmt::format("; {} training row{} at held-out poses {} left out", apart, apart == 1 ? "" : "s",
-                                apart == 1 ? "is" : "are");
-  for (std::size_t s = 0; s < stations.size(); ++s) {
-    out.train.add(vn::readings_joined(stations[s].train, same), out.names[s], places[s], points[s]);
-    out.test.add(std::move(stations[s].test), out.names[s], places[s], points[s]);
-  }
+  add_split(out, stations, {out.names, places, points}, o, same);
   for (const std::string& file : o.distances) {
     const vn::Distances<N> distances = vn::read_distances<N>(file, types, o.csv.format());
     out.inputs.push_back(file_of(distances.origin()));
@@ -154,6 +166,25 @@ MeasuredFiles<N> read_measurements(const CalibrationOptions& o, std::span<const 
   for (const vn::Contact& contact : contacts) out.train.add(contact);
   out.inputs.push_back(file_of(contacts.front().origin()));
   out.inputs.back().rows = 0;  // of several objects
+  return out;
+}
+
+template <int N>
+MeasuredFiles<N> hold_out_poses(const vn::Measurements<N>& poses, const CalibrationOptions& o,
+                                std::span<const vn::JointType> types, std::uint64_t seed) {
+  MeasuredFiles<N> out;
+  const vn::SamePose same{.joint_types = types};
+  std::vector<vn::Split<N>> stations;
+  for (std::size_t s = 0; s < poses.poses().size(); ++s) {
+    out.names.push_back(poses.sets()[s].name);
+    out.files.push_back(poses.poses()[s]);
+    stations.push_back(split_station(poses.poses()[s], o, out.names.back(), std::optional<vn::Dataset<N>>{}, types,
+                                     seed, out.held_out));
+  }
+  out.inputs.push_back(file_of(out.files.front().origin()));
+  for (std::size_t s = 1; s < out.files.size(); ++s) out.inputs.back().rows += out.files[s].size();
+  const std::vector<std::string> none(out.names.size());
+  add_split(out, stations, {out.names, none, none}, o, same);
   return out;
 }
 
@@ -182,6 +213,8 @@ std::vector<vn::DataAudit> audit_files(const vn::DescribedRobot<N>& robot, const
                                         std::span<const vn::JointType>);                                    \
   template MeasuredFiles<N> read_measurements<N>(const CalibrationOptions&, std::span<const vn::JointType>, \
                                                  std::uint64_t);                                            \
+  template MeasuredFiles<N> hold_out_poses<N>(const vn::Measurements<N>&, const CalibrationOptions&,        \
+                                              std::span<const vn::JointType>, std::uint64_t);               \
   template std::vector<vn::DataAudit> audit_files<N>(const vn::DescribedRobot<N>&, const MeasuredFiles<N>&);
 VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
 #undef VERNIER_INSTANTIATE

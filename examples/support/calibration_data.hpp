@@ -6,13 +6,17 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "calibration_options.hpp"
 #include "vernier/calibration/data_audit.hpp"
+#include "vernier/camera/camera_setup.hpp"
 #include "vernier/data/dataset.hpp"
+#include "vernier/error_model/error_model_estimate.hpp"
 #include "vernier/io/report_input.hpp"
 #include "vernier/io/robot_file.hpp"
 #include "vernier/measurements/measurements.hpp"
@@ -28,6 +32,10 @@ struct MeasuredFiles {
   vernier::Measurements<N> test;            ///< held-out poses, stations as in `train`
   std::string held_out;                     ///< which poses those are, in words
   std::vector<vernier::ReportFile> inputs;  ///< all files that were read
+  double camera_error = 0;                  ///< mean distance on the board at left-out images [m]; 0 without images
+  std::optional<vernier::CameraSetup> camera{};  ///< that saw the poses, where images show them
+  /// Covariance of a fit with errors that its poses share, as those of one camera do; none where they share none.
+  std::function<vernier::MatrixX(const vernier::ErrorModelEstimate&)> covariance{};
 
   /// Whether sets of poses have tools of their own: they are of several reflectors, or an option says so.
   bool has_own_tools(bool each) const {
@@ -53,6 +61,13 @@ vernier::Dataset<N> read_poses(const std::string& file, const CalibrationOptions
 template <int N>
 MeasuredFiles<N> read_measurements(const CalibrationOptions& options, std::span<const vernier::JointType> types,
                                    std::uint64_t seed);
+
+/// Holds out some of poses that are no rows of a file of poses: images show them.
+/// @param poses   one set a place, whose rows have an origin
+/// @param options how, see `read_measurements`
+template <int N>
+MeasuredFiles<N> hold_out_poses(const vernier::Measurements<N>& poses, const CalibrationOptions& options,
+                                std::span<const vernier::JointType> types, std::uint64_t seed);
 
 /// Looks for faults in the files of poses and prints them, before a calibration may refuse them.
 /// @return one audit a set of poses; without findings for sets too short to be audited

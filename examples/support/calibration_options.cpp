@@ -28,7 +28,7 @@ void add_measurements(Program& program, CalibrationOptions& o, TypedValues& type
                   "each pose was approached from), point (which of several reflectors; or all in one line, "
                   "x1_mm .. zK_mm); one file a sensor station",
                   "FILE")
-      .required_without("--contacts or --flange-poses");
+      .required_without("--contacts, --distances or --flange-poses");
   const Option contacts =
       program.add_option("--contacts", o.contacts,
                          "what the tool point touched, beside the poses or, without --data, in their place: "
@@ -39,8 +39,8 @@ void add_measurements(Program& program, CalibrationOptions& o, TypedValues& type
       .within(1e-6, 1e3)
       .needs(contacts);
   program.add_option("--distances", o.distances,
-                     "measured distances from a fixed point (draw-wire, ball-bar), used beside the poses: "
-                     "q1_rad.., distance_mm; one file a fixed point",
+                     "measured distances from a fixed point (draw-wire, ball-bar), beside the poses or, without "
+                     "--data, in their place: q1_rad.., distance_mm; one file a fixed point",
                      "FILE");
   o.csv.add_to(program);
   o.csv.add_euler_to(program);
@@ -79,31 +79,44 @@ void add_cameras(Program& program, CalibrationOptions& o) {
                   "NAMES")
       .delimiter(',')
       .needs(intrinsics);
-  const Option seen =
+  Option seen =
       program
           .add_option("--save-poses", o.save_poses,
                       "write the poses that the images show, with their covariances, to a file that --data takes (for "
                       "joint errors, plans, reports); of several places of the board to poses.csv, poses.2.csv, ...",
                       "FILE")
           .needs(corners);
+  const Option joints = program
+                            .add_flag("--joint-errors", o.joint_errors,
+                                      "find the errors of the joints as well, from the poses that the images show, and "
+                                      "assess all at held-out images, as without --corners")
+                            .needs(corners);
   Option poses =
       program.add_option("--flange-poses", o.flange_poses,
                          "poses of the flange in place of joints, for base and tool alone: image, x_mm, y_mm, "
                          "z_mm, rx_rad, ry_rad, rz_rad",
                          "FILE");
   poses.needs(corners);
-  poses.excludes(seen);
+  poses.excludes(seen).excludes(joints);
+  seen.excludes(joints);
   for (const char* other : {"--data", "--robot", "--save"}) poses.excludes(program.option(other));
-  for (const char* other : {"--distances", "--contacts", "--test", "--test-every", "--split", "--train", "--report",
-                            "--own-tools", "--prior", "--priors", "--model"})
+  for (const char* other : {"--distances", "--contacts", "--test", "--own-tools", "--model"})
     corners.excludes(program.option(other));
 }
 
 void add_split(Program& program, CalibrationOptions& o) {
   program.group(Group::validation);
-  Option test = program.add_option("--test", o.test, "held-out measured poses, as many files as --data", "FILE");
+  Option test = program.add_option("--test", o.test,
+                                   "held-out measured poses, as many files as --data; without --data, held-out "
+                                   "contacts, or distances, likewise",
+                                   "FILE");
   Option every =
-      program.add_setting("--test-every", o.test_every, "hold out every K-th row of the data", "K").within(2, 1000000);
+      program
+          .add_setting(
+              "--test-every", o.test_every,
+              "hold out every K-th row of the data; of contacts without --data, every K-th object, and none by default",
+              "K")
+          .within(2, 1000000);
   const Option split =
       program
           .add_option("--split", o.split,
@@ -194,23 +207,32 @@ void add_reregistration(Program& program, CalibrationOptions& o) {
 /// Refuses what cannot be used together.
 void require_consistent(const Program& program, const CalibrationOptions& o) {
   if (!o.corners.empty()) {
+    for (const char* of_poses :
+         {"--test-every", "--split", "--test-fraction", "--train", "--report", "--prior", "--priors"})
+      if (!o.joint_errors && program.given(of_poses))
+        throw UsageError(std::string(of_poses) + " needs --joint-errors beside --corners");
     if (!o.flange_poses.empty()) return;
     if (o.data.size() != 1)
       throw UsageError("--corners takes one file of --data, the joints of the images, or --flange-poses");
     if (!program.given("--robot")) throw UsageError("--robot is required (or --flange-poses in place of --data)");
     return;
   }
-  if (o.data.empty() && (o.reregister || o.contacts.empty()))
-    throw UsageError("--data is required (or --contacts, to calibrate without measured poses)");
+  if (o.data.empty() && (o.reregister || (o.contacts.empty() && o.distances.empty())))
+    throw UsageError("--data is required (or --contacts or --distances, to calibrate without measured poses)");
   if (o.reregister) {
     if (o.data.size() != 1) throw UsageError("--model takes one file of --data");
     return;
   }
   if (!program.given("--robot")) throw UsageError("--robot is required (or --model, to register a fitted arm again)");
   if (!o.data.empty()) return;
-  for (const char* of_poses :
-       {"--distances", "--test", "--test-every", "--split", "--test-fraction", "--train", "--report", "--prior"})
+  if (!o.contacts.empty() && !o.distances.empty())
+    throw UsageError("--contacts beside --distances needs --data: neither shows where the base stands for the other");
+  for (const char* of_poses : {"--position-sigma", "--orientation-sigma", "--positions-only", "--own-tools"})
     if (program.given(of_poses)) throw UsageError(std::string(of_poses) + " needs --data");
+  if (o.contacts.empty()) return;
+  for (const char* of_joints : {"--harmonics", "--priors", "--estimate-down", "--relevant-mm"})
+    if (program.given(of_joints))
+      throw UsageError(std::string(of_joints) + " needs --data: contacts alone identify the geometry");
 }
 
 }  // namespace
@@ -230,9 +252,14 @@ CalibrationOptions read_calibration_options(Program& program) {
 
   if (o.date.size() > 40 || std::any_of(o.date.begin(), o.date.end(), [](char c) { return c < ' '; }))
     throw UsageError("--date takes up to 40 plain characters");
-  if (!o.test.empty() && o.test.size() != o.data.size())
-    throw UsageError(fmt::format("{} files of --test for {} of --data", o.test.size(), o.data.size()));
+  const std::size_t measured = !o.data.empty() ? o.data.size() : !o.contacts.empty() ? 1 : o.distances.size();
+  if (!o.test.empty() && o.test.size() != measured)
+    throw UsageError(fmt::format("{} files of --test for {} of {}", o.test.size(), measured,
+                                 !o.data.empty()       ? "--data"
+                                 : !o.contacts.empty() ? "--contacts"
+                                                       : "--distances"));
   if (program.given("--test-fraction") && o.split.empty()) o.split = "random";
+  o.holds_out = program.given("--test-every") || !o.split.empty();
   o.reregister = program.given("--model");
   require_consistent(program, o);
 

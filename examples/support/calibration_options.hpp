@@ -29,10 +29,12 @@ struct CalibrationOptions {
       intrinsics;  ///< files of cameras, in the order in which the corners name them; none: unknown
   std::vector<std::string> free_intrinsics;  ///< names of those that are estimated although they are given
   std::string save_poses;                    ///< file for poses that images show; empty: none
+  bool joint_errors = false;                 ///< joint errors are found from the poses that images show
   std::string flange_poses;                  ///< file of poses of the flange in place of joints; empty: none
   CsvOptions csv;                            ///< how these files are written
   SensorOptions sensor;                      ///< accuracy of measured poses; `calibrate.sensors` has it, too
   std::string split;                         ///< how a fraction of the rows is held out; empty: every K-th row
+  bool holds_out = false;                    ///< whether the command line says what is held out; of poses always some
   vernier::Index test_every = 5;             ///< that K
   double test_fraction = 0.2;                ///< that fraction
   vernier::Index train_rows = 0;             ///< rows to learn from; 0: all that are not held out

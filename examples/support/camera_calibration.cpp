@@ -51,7 +51,7 @@ Json frames_json(const std::vector<std::string>& names, const std::vector<vn::Is
   return out;
 }
 
-Json to_json(const vn::CameraReport& report) {
+Json camera_report_json(const vn::CameraReport& report) {
   const bool on_flange = report.mount == vn::CameraMount::flange;
   Json out{{"camera_mount", on_flange ? "flange" : "fixed"},
            {"mean_mm", report.mean * 1e3},
@@ -213,18 +213,6 @@ void draw_residuals(const std::filesystem::path& path, const vn::CameraReport& r
            {.x_range = std::pair(0.0, size[0]), .y_range = std::pair(size[1], 0.0), .equal_axes = true});
 }
 
-/// What a saved model says of the images.
-vn::CameraSetup setup_of(const vn::CameraReport& report) {
-  return {report.mount == vn::CameraMount::flange,
-          report.cameras,
-          report.camera_covariances,
-          report.camera_names,
-          report.board,
-          report.board_names,
-          report.in_base,
-          report.in_flange};
-}
-
 template <int N>
 vn::CameraReport calibrate_arm(const CalibrationOptions& o, const vn::RobotDescription& description,
                                const vn::Board& board, const vn::CornerViews& views, const vn::CsvFormat& format,
@@ -271,43 +259,68 @@ vernier::Camera read_camera(const std::string& file) {
 #endif
 }
 
+CameraInputs read_camera_inputs(const CalibrationOptions& o) {
+  CameraInputs out{vn::read_board(o.board), {}, o.csv.format(), {}};
+  out.views = vn::read_corners(o.corners, out.board, out.format);
+  out.options = {.mount = o.camera_mount == "flange" ? vn::CameraMount::flange : vn::CameraMount::fixed,
+                 .free = o.free_intrinsics,
+                 .loss = o.calibrate.sensors.loss,
+                 .geometry = o.calibrate.geometry};
+  for (const std::string& file : o.intrinsics) out.options.cameras.push_back(read_camera(file));
+  if (const std::size_t given = out.options.cameras.size(); given > 0 && given != out.views.cameras.size())
+    throw UsageError(
+        fmt::format("{} files of --intrinsics, but the corners are of {} cameras", given, out.views.cameras.size()));
+  return out;
+}
+
+vernier::CameraSetup setup_of(const vernier::CameraReport& report) {
+  return {report.mount == vn::CameraMount::flange,
+          report.cameras,
+          report.camera_covariances,
+          report.camera_names,
+          report.board,
+          report.board_names,
+          report.in_base,
+          report.in_flange};
+}
+
+std::string camera_text(const vernier::CameraReport& report) {
+  return report.summary() + image_table(report) + (report.parameters.empty() ? "" : parameter_table(report));
+}
+
+Json camera_json(const vernier::CameraReport& report) { return camera_report_json(report); }
+
+void draw_cameras(const std::filesystem::path& folder, const vernier::CameraReport& report) {
+  for (std::size_t c = 0; c < report.cameras.size(); ++c)
+    draw_residuals(folder / (c == 0 ? "residuals.svg" : fmt::format("residuals.{}.svg", c + 1)), report,
+                   static_cast<vn::Index>(c));
+}
+
 int calibrate_by_camera(Program& program, const CalibrationOptions& o) {
-  const vn::Board board = vn::read_board(o.board);
-  vn::CsvFormat format = o.csv.format();
-  const vn::CornerViews views = vn::read_corners(o.corners, board, format);
-  vn::CameraOptions options{.mount = o.camera_mount == "flange" ? vn::CameraMount::flange : vn::CameraMount::fixed,
-                            .free = o.free_intrinsics,
-                            .loss = o.calibrate.sensors.loss,
-                            .geometry = o.calibrate.geometry};
-  for (const std::string& file : o.intrinsics) options.cameras.push_back(read_camera(file));
-  if (!options.cameras.empty() && options.cameras.size() != views.cameras.size())
-    throw UsageError(fmt::format("{} files of --intrinsics, but the corners are of {} cameras", options.cameras.size(),
-                                 views.cameras.size()));
+  CameraInputs in = read_camera_inputs(o);
   program.require_output_folder();
   vn::CameraReport report;
   std::vector<SeenRange> ranges;
   std::string name = "poses of the flange";
   if (!o.flange_poses.empty()) {
-    report = vn::calibrate_hand_eye(board, views, vn::read_flange_poses(o.flange_poses, format), options);
+    report = vn::calibrate_hand_eye(in.board, in.views, vn::read_flange_poses(o.flange_poses, in.format), in.options);
   } else {
     const vn::RobotDescription robot = choose_robot(o.robot);
     name = robot.name;
-    format.controller = robot.controller;
-    report = dispatch_dof(robot.dof(),
-                          [&](auto n) { return calibrate_arm<n()>(o, robot, board, views, format, options, ranges); });
+    in.format.controller = robot.controller;
+    report = dispatch_dof(robot.dof(), [&](auto n) {
+      return calibrate_arm<n()>(o, robot, in.board, in.views, in.format, in.options, ranges);
+    });
   }
-  fmt::print("{}\n{}{}", name, report.summary(), image_table(report));
-  if (!report.parameters.empty()) fmt::print("{}", parameter_table(report));
+  fmt::print("{}\n{}", name, camera_text(report));
   if (!ranges.empty()) fmt::print("{}", range_table(ranges));
   if (!program.common().json.empty()) {
-    Json json = to_json(report);
+    Json json = camera_json(report);
     if (!ranges.empty()) json["joints"] = to_json(ranges);
     write_json(program.common().json, json);
   }
   const std::filesystem::path folder = program.output_folder();
-  for (std::size_t c = 0; c < report.cameras.size(); ++c)
-    draw_residuals(folder / (c == 0 ? "residuals.svg" : fmt::format("residuals.{}.svg", c + 1)), report,
-                   static_cast<vn::Index>(c));
+  draw_cameras(folder, report);
   fmt::print("\nFigures: {}\n", folder.string());
   if (!o.save.empty()) fmt::print("Calibrated model: {}\n", shown(o.save));
   return 0;

@@ -4,11 +4,15 @@
 /// @file
 /// `calibrate --corners`: an arm, or base and tool alone, from images of a printed board.
 
+#include <filesystem>
 #include <string>
 
 #include "calibration_options.hpp"
 #include "cli.hpp"
-#include "vernier/camera/camera.hpp"
+#include "json_file.hpp"
+#include "vernier/calibration/camera_calibration.hpp"
+#include "vernier/camera/camera_setup.hpp"
+#include "vernier/data/csv_format.hpp"
 
 namespace support {
 
@@ -16,6 +20,31 @@ namespace support {
 /// @throws UsageError for YAML, if this build cannot read it
 /// @throws vernier::DataError on a malformed file
 vernier::Camera read_camera(const std::string& file);
+
+/// What images need beside the joints.
+struct CameraInputs {
+  vernier::Board board;
+  vernier::CornerViews views;
+  vernier::CsvFormat format;
+  vernier::CameraOptions options;
+};
+
+/// Reads board, corners and intrinsics.
+/// @throws UsageError for another number of files of intrinsics than of cameras
+/// @throws vernier::DataError on a malformed file
+CameraInputs read_camera_inputs(const CalibrationOptions& options);
+
+/// What a saved model says of the images.
+vernier::CameraSetup setup_of(const vernier::CameraReport& report);
+
+/// The text of a screen: summary, images and parameters.
+std::string camera_text(const vernier::CameraReport& report);
+
+/// Results as JSON.
+Json camera_json(const vernier::CameraReport& report);
+
+/// Draws what is left of the corners over the image of each camera.
+void draw_cameras(const std::filesystem::path& folder, const vernier::CameraReport& report);
 
 /// Reads corners, board and joints, or poses of the flange, prints what they determine and saves the model.
 /// @return exit code

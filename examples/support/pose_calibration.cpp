@@ -25,15 +25,6 @@ namespace {
 
 namespace vn = vernier;
 
-vn::VectorX search_priors(const vn::PriorObjective& objective, const vn::Box& box, bool genetic,
-                          const vn::FitOptions& fit) {
-  const auto best = [&](const auto& algorithm) {
-    return vn::minimize(algorithm, objective, box, {}, fit.seed, fit.executor, fit.observer).best;
-  };
-  if (genetic) return best(vn::GeneticAlgorithm{.individuals = 20, .generations = prior_generations});
-  return best(vn::Pso{.particles = 20, .iterations = prior_generations, .positions = vn::PositionRule::clamped});
-}
-
 /// Names of files without their folders, joined by commas.
 std::string file_names(const std::vector<std::string>& paths) {
   std::string out;
@@ -61,26 +52,30 @@ vn::ErrorStatistics held_out_error(const vn::RobotDescription& description, cons
   return vn::prediction_error(registered.model, measured.test.poses()[0]);
 }
 
-/// Options with those frames unknown that the arm does not state as known, and without what its passive joints hide.
-/// @throws UsageError for a known base of several stations
-CalibrationOptions options_for(CalibrationOptions o, const vn::RobotDescription& arm) {
-  if (arm.base_known && o.data.size() > 1) throw UsageError(known_base_of_stations);
-  const std::string held = hold_known_parts(arm, o.calibrate);
-  if (!held.empty()) fmt::print("Held, because passive joints do not move by themselves: {}\n", held);
-  return o;
+/// A model in its file, with the camera that saw its poses where there was one.
+template <int N>
+std::string save_station(const std::string& path, const vn::Calibration<vn::DhChain<N>>& calibration,
+                         const vn::RobotInfo<N>& info, std::size_t station,
+                         const std::optional<vn::CameraSetup>& camera, double camera_error) {
+  if (!camera) return vn::save(path, calibration, info, station);
+  const vn::CalibratedRobot<N> robot = vn::calibrated_robot(calibration, info, station);
+  vn::Provenance from = robot.provenance();
+  from.measured = "images";
+  from.camera = camera;
+  from.held_out_error = camera_error;  // without the noise of single images
+  return vn::save(path, robot.with_model(robot.model(), std::move(from)));
 }
 
+}  // namespace
+
 template <int N>
-PoseCalibration calibrate_arm(const vn::RobotDescription& description, const CalibrationOptions& given,
-                              const vn::FitOptions& fit) {
-  const CalibrationOptions o = options_for(given, description);
+PoseCalibration calibrate_measured(const vn::RobotDescription& description, const CalibrationOptions& o,
+                                   const vn::FitOptions& fit, std::shared_ptr<const MeasuredFiles<N>> measured) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   std::optional<vn::SavedModel> earlier;
   if (!o.prior.empty()) earlier = vn::read_model(o.prior);
   std::optional<vn::ArmPrior> prior;
   if (earlier) prior = prior_of(*earlier, N);
-  const auto measured =
-      std::make_shared<const MeasuredFiles<N>>(read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed));
   std::vector<vn::DataAudit> audits = audit_files(robot, *measured);
 
   vn::CalibrateOptions options = o.calibrate;
@@ -92,7 +87,8 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
   };
   options.fit = fit;
   if (o.priors != "default") options.search = search;
-  const auto calibration = vn::calibrate(robot.arm, measured->train, options);
+  auto calibration = vn::calibrate(robot.arm, measured->train, options);
+  if (measured->covariance) calibration.errors.covariance = measured->covariance(calibration.errors);
   PoseCalibration out{.nominal = vn::ArmGeometry(robot.arm),
                       .identified = vn::ArmGeometry(calibration.geometry.model.identified()),
                       .report = vn::evaluate(calibration, measured->test, robot.limits, robot.controller),
@@ -112,10 +108,11 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
                             .data_sha256 = file_hashes<N>(measured->files),
                             .controller = robot.controller};
   };
-  if (!o.save.empty()) out.model = {o.save, vn::save(o.save, calibration, info_of(0))};
+  if (!o.save.empty())
+    out.model = {o.save, save_station<N>(o.save, calibration, info_of(0), 0, measured->camera, measured->camera_error)};
   for (std::size_t s = 1; !o.save.empty() && own_tools && s < out.sets.size(); ++s) {
     out.further_models.push_back(numbered(o.save, s + 1));
-    vn::save(out.further_models.back(), calibration, info_of(s), s);
+    save_station<N>(out.further_models.back(), calibration, info_of(s), s, measured->camera, measured->camera_error);
   }
   if (!o.report.empty()) {
     out.page = calibration_page(out.report, o, robot, *measured);
@@ -128,11 +125,36 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
   return out;
 }
 
-}  // namespace
+vernier::VectorX search_priors(const vernier::PriorObjective& objective, const vernier::Box& box, bool genetic,
+                               const vernier::FitOptions& fit) {
+  const auto best = [&](const auto& algorithm) {
+    return vn::minimize(algorithm, objective, box, {}, fit.seed, fit.executor, fit.observer).best;
+  };
+  if (genetic) return best(vn::GeneticAlgorithm{.individuals = 20, .generations = prior_generations});
+  return best(vn::Pso{.particles = 20, .iterations = prior_generations, .positions = vn::PositionRule::clamped});
+}
+
+CalibrationOptions options_for(CalibrationOptions o, const vn::RobotDescription& arm) {
+  if (arm.base_known && o.data.size() > 1) throw UsageError(known_base_of_stations);
+  const std::string held = hold_known_parts(arm, o.calibrate);
+  if (!held.empty()) fmt::print("Held, because passive joints do not move by themselves: {}\n", held);
+  return o;
+}
 
 PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, const CalibrationOptions& options,
                                      const vernier::FitOptions& fit) {
-  return dispatch_dof(robot.dof(), [&](auto n) { return calibrate_arm<n()>(robot, options, fit); });
+  const CalibrationOptions o = options_for(options, robot);
+  return dispatch_dof(robot.dof(), [&](auto n) {
+    return calibrate_measured<n()>(
+        robot, o, fit,
+        std::make_shared<const MeasuredFiles<n()>>(read_measurements<n()>(o, robot.joint_types(), fit.seed)));
+  });
 }
+
+#define VERNIER_INSTANTIATE(N)                                                                           \
+  template PoseCalibration calibrate_measured<N>(const vn::RobotDescription&, const CalibrationOptions&, \
+                                                 const vn::FitOptions&, std::shared_ptr<const MeasuredFiles<N>>);
+VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
+#undef VERNIER_INSTANTIATE
 
 }  // namespace support

@@ -5,14 +5,17 @@
 /// `calibrate` from measured poses, whatever the number of joints.
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "calibration_data.hpp"
 #include "calibration_options.hpp"
 #include "found_reflectors.hpp"
 #include "vernier/calibration/calibration_report.hpp"
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/core/fit_options.hpp"
+#include "vernier/error_model/prior_objective.hpp"
 #include "vernier/io/report_input.hpp"
 #include "vernier/io/robot_file.hpp"
 #include "vernier/kinematics/arm_geometry.hpp"
@@ -21,6 +24,14 @@ namespace support {
 
 /// Generations of a search of priors.
 inline constexpr vernier::Index prior_generations = 15;
+
+/// Sizes of joint errors by a swarm, or by a genetic algorithm.
+/// @param objective of left-out poses
+/// @param box       of its arguments
+/// @param genetic   by a genetic algorithm
+/// @param fit       seed, executor and observer
+vernier::VectorX search_priors(const vernier::PriorObjective& objective, const vernier::Box& box, bool genetic,
+                               const vernier::FitOptions& fit);
 
 /// A calibration from measured poses, assessed.
 struct PoseCalibration {
@@ -46,5 +57,16 @@ struct PoseCalibration {
 /// @throws UsageError for an earlier model of another arm
 PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, const CalibrationOptions& options,
                                      const vernier::FitOptions& fit);
+
+/// Does so with measurements that were read already; of an arm of N joints, with the options that it leaves open.
+/// Compiled in pose_calibration.cpp, for all numbers of joints.
+template <int N>
+PoseCalibration calibrate_measured(const vernier::RobotDescription& robot, const CalibrationOptions& options,
+                                   const vernier::FitOptions& fit, std::shared_ptr<const MeasuredFiles<N>> measured);
+
+/// Options with those frames unknown that the arm does not state as known, and without what its passive joints hide,
+/// which it prints.
+/// @throws UsageError for a known base of several stations
+CalibrationOptions options_for(CalibrationOptions options, const vernier::RobotDescription& arm);
 
 }  // namespace support

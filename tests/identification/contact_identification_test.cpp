@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <array>
+#include <cmath>
 
 #include "complaint.hpp"
 #include "larger.hpp"
@@ -11,6 +13,7 @@
 #include "touched_objects.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/identification/identify_by_contacts.hpp"
+#include "vernier/identification/object_errors.hpp"
 
 namespace vernier::contact_identification_test {
 namespace {
@@ -330,6 +333,53 @@ TEST(Contacts, RefusesAPlaneTouchedAlongALine) {
   const std::string text = complaint([&] { identify_by_contacts(nominal_arm(), contacts); });
   EXPECT_NE(text.find("contact table: all touches of the plane are along a line ("), std::string::npos) << text;
   EXPECT_NE(text.find("which does not determine its normal"), std::string::npos) << text;
+}
+
+/// Touches of the three kinds of objects with lengths.
+std::vector<Contact> lengthy_objects() {
+  return {touched(vernier_test::table, "table", lengths(20, 10, 0.1)),
+          touched({ContactKind::socket, {0.3, 0.1, 0.4}, Vector3(0.6, 0, -0.8)}, "bar", lengths(20, 10, 0.15)),
+          touched({ContactKind::ball, {0.4, 0.1, 0.3}, Vector3::UnitZ()}, "ball", VectorX::Constant(20, 0.02))};
+}
+
+TEST(ObjectErrors, OfTheArmThatTouchedAreNone) {
+  for (const Contact& contact : lengthy_objects()) {
+    const ObjectErrors found = object_errors(ArmGeometry(actual_arm()), contact);
+    EXPECT_LT(found.rms(), 1e-9) << contact.name();
+    EXPECT_LT(std::abs(found.length_error), 1e-9) << contact.name();
+    for (Index i = 0; i < contact.size(); ++i)
+      EXPECT_LT(
+          (point(found.points, i) - actual_arm().position(JointVector<6>(contact.joints().row(i).transpose()))).norm(),
+          1e-12);
+  }
+  EXPECT_TRUE(std::isnan(
+      object_errors(ArmGeometry(actual_arm()), touched(vernier_test::front, "front", lengths(8))).length_error));
+}
+
+// A length that is said to be another one is off by that, whatever the kind of object.
+TEST(ObjectErrors, MeasureTheLongestLength) {
+  for (const Contact& contact : lengthy_objects()) {
+    VectorX said = contact.known();
+    const double longest = said.maxCoeff();
+    for (double& length : said) length *= 1 + 0.1e-3 / longest;
+    const Contact wrong(contact.name(), contact.kind(), contact.joints(), said);
+    EXPECT_NEAR(object_errors(ArmGeometry(actual_arm()), wrong).length_error, -0.1e-3, 1e-6) << contact.name();
+  }
+}
+
+// By another arm: distances are those of its points from the best plane, computed here by the eigenvector of their
+// scatter.
+TEST(ObjectErrors, AreDistancesFromTheBestPlane) {
+  const Contact front = touched(vernier_test::front, "front", lengths(20));
+  const ObjectErrors found = object_errors(ArmGeometry(nominal_arm()), front);
+  PointRows points(20, 3);
+  for (Index i = 0; i < 20; ++i)
+    set_point(points, i, nominal_arm().position(JointVector<6>(front.joints().row(i).transpose())));
+  const PointRows centred = points.rowwise() - points.colwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Matrix3> axes(Matrix3(centred.transpose() * centred));
+  for (Index i = 0; i < 20; ++i)
+    EXPECT_NEAR(found.distances(i), std::abs(centred.row(i).dot(axes.eigenvectors().col(0))), 1e-9) << i;
+  EXPECT_GT(found.rms(), 1e-4);
 }
 
 }  // namespace

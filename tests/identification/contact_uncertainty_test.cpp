@@ -104,5 +104,55 @@ TEST(ContactUncertainty, HasTheErrorsOfJoints) {
   EXPECT_NEAR(found.joint_sigma, 0.2e-3, 0.04e-3);
 }
 
+// Arms that an earlier calibration knows, with errors as its covariance says, and a few touches of two bars.
+TEST(ContactUncertainty, OfAnEarlierCalibrationAndTouchesIsThatOfBoth) {
+  const DhChain<6> designed = robots::abb_irb120().chain;
+  const Framed<DhChain<6>> nominal(designed, {}, probe);
+  KnownGeometry known{.name = "earlier"};
+  const Actual exact(WithJointErrors<DhChain<6>>(designed), nominal.base_frame(), nominal.tool_frame());
+  for (const Index k : identify_by_contacts(nominal, bars(exact, 0, 1)).free)
+    if (k < ArmParameters::chain_end(6)) known.parameters.push_back(k);
+  const auto n = static_cast<Index>(known.parameters.size());
+  vernier_test::NormalisedSquares before, after;
+  double change = 0;
+  constexpr int arms = 8;
+  for (std::uint64_t seed = 1; seed <= arms; ++seed) {
+    Rng rng(child_seed(seed, 9));
+    // correlated: half of each error is of a common direction
+    known.covariance = MatrixX::Constant(n, n, 0.01e-6) + MatrixX(VectorX::Constant(n, 0.03e-6).asDiagonal());
+    known.values = ArmGeometry(nominal).parameters();
+    VectorX actual = known.values;
+    const double common = rng.normal();
+    for (const Index k : known.parameters) {
+      known.values(k) += 1e-3 * rng.normal();
+      actual(k) = known.values(k) + std::sqrt(0.01e-6) * common + std::sqrt(0.03e-6) * rng.normal();
+    }
+    const Framed<DhChain<6>> framed = ArmGeometry(nominal).with_parameters(actual).framed(designed);
+    const Actual arm(WithJointErrors<DhChain<6>>(framed.model()), framed.base_frame(), framed.tool_frame());
+    std::vector<Contact> touched = bars(arm, 0.03e-3, seed);
+    touched.resize(2, touched.front());
+    const auto found = identify_by_contacts(nominal, touched, {.frames = Frames::tool}, {.loss = Loss::huber}, &known);
+    EXPECT_EQ(found.prior, "earlier");
+    change += found.prior_change / arms;
+    VectorX error(static_cast<Index>(found.free.size())), prior(error.size());
+    for (Index i = 0; i < error.size(); ++i) {
+      const ParameterEstimate& p = found.parameters[static_cast<std::size_t>(found.free[static_cast<std::size_t>(i)])];
+      error(i) = p.identified - actual(found.free[static_cast<std::size_t>(i)]);
+      prior(i) = vernier_test::prior_of(p);
+    }
+    add_differences(error, found.covariance, prior, after);
+    for (const Index k : found.free)
+      if (k < ArmParameters::chain_end(6)) {
+        before.sum += std::pow(known.values(k) - actual(k), 2);
+        ++before.count;
+      }
+  }
+  EXPECT_GT(after.count, 30);
+  EXPECT_GT(after.rms(), 0.8);
+  EXPECT_LT(after.rms(), 1.2);
+  EXPECT_NEAR(before.rms(), 0.2e-3, 0.02e-3);
+  EXPECT_LT(change, 0.2);  // nothing has changed
+}
+
 }  // namespace
 }  // namespace vernier::contact_uncertainty_test

@@ -117,6 +117,47 @@ TEST(Covariances, MakeAnIdentificationMoreAccurate) {
   EXPECT_LT(with, 0.3 * without);
 }
 
+// Links as designed leave residuals of many standard deviations, position and orientation going together. A robust loss
+// of whole rows has a minimum, and the iteration comes to its end there.
+TEST(Covariances, ARobustLossWeighsRowsAsWholes) {
+  const Measured measured(5);
+  const auto sets = vn::Measurements<6>(measured.poses.with_covariances(measured.covariances)).sets();
+  const vn::ArmGeometry designed{vn::Framed(vn::robots::ur10().chain)};
+  std::vector<vn::GeometricUnknown> frames;
+  for (vn::Index k = 0; k < 6; ++k) frames.push_back({k, -1, 1e-3, 0});
+  for (vn::Index k = 0; k < 6; ++k) frames.push_back({vn::ArmParameters::chain_end(6) + k, -1, 1e-3, 0});
+  vn::detail::CalibrationProblem problem(vn::ArmParameterisation({designed}, frames), sets, vn::Loss::huber);
+  EXPECT_TRUE(problem.solve(200));
+  const double limit = problem.thresholds()[0] * std::sqrt(2.0);
+  ASSERT_GT(limit, 10);  // times the standard deviations
+  const auto loss = [&](const vn::ArmGeometry& arm) {
+    const std::vector<vn::Isometry3> modelled = arm.poses(measured.poses.joints());
+    double sum = 0;
+    for (vn::Index i = 0; i < 60; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      vn::Vector6 residual;
+      residual.head<3>() = modelled[row].translation() - measured.poses.position(i);
+      residual.tail<3>() = vn::rotation_difference(modelled[row].linear(), measured.poses.orientation(i));
+      const double norm = std::sqrt(residual.dot(measured.covariances[row].ldlt().solve(residual)));
+      sum += norm <= limit ? norm * norm : 2 * limit * norm - limit * limit;
+    }
+    return sum;
+  };
+  const vn::ArmGeometry found = problem.arm.geometry(0);
+  for (const vn::GeometricUnknown& unknown : frames) {
+    constexpr double step = 1e-5;
+    const auto moved = [&](double by) {
+      vn::VectorX values = found.parameters();
+      values(unknown.parameter) += by;
+      return loss(found.with_parameters(values));
+    };
+    const double slope = (moved(step) - moved(-step)) / (2 * step),
+                 curvature = (moved(step) + moved(-step) - 2 * loss(found)) / (step * step);
+    EXPECT_GT(curvature, 0) << unknown.parameter;
+    EXPECT_LT(std::abs(slope / curvature), 3e-6) << unknown.parameter;  // to the lowest point [m, rad]
+  }
+}
+
 TEST(Covariances, AreKeptByRowsAndTurnedIntoOneFrame) {
   const Measured measured(3);
   const vn::Dataset<6> poses = measured.poses.with_covariances(measured.covariances);

@@ -15,6 +15,7 @@
 #include "vernier/io/camera_files.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/error_sources.hpp"
 
 namespace vernier::calibrate_camera_test {
 namespace {
@@ -27,9 +28,13 @@ class CalibrateCamera : public ::testing::Test {
   void SetUp() override {
     setup_.board = {.rows = 7, .columns = 9, .square = 0.03, .scale_sigma = 1e-4};
     setup_.images = 30;
-    const Robot<6> robot = robots::abb_irb120();
-    actual_ = with_geometric_errors(robot.chain, {}, 3);
-    const auto simulated = vernier_test::simulated_views(actual_, robot.limits, setup_, 4);
+    actual_ = with_geometric_errors(robots::abb_irb120().chain, {}, 3);
+    write_images(actual_);
+  }
+  /// Images that an arm takes, its joints and the poses of its flange, as files.
+  template <class Actual>
+  void write_images(const Actual& actual) {
+    const auto simulated = vernier_test::simulated_views(actual, robots::abb_irb120().limits, setup_, 4);
     write_file(folder_ / "board.json", board_to_json(setup_.board).dump());
     write_file(folder_ / "camera.json", camera_to_json(setup_.camera).dump());
     std::string corners = "image,board,corner,u_px,v_px,width_px,height_px\n";
@@ -46,7 +51,7 @@ class CalibrateCamera : public ::testing::Test {
       joints += image;
       for (const double value : q) joints += message(',', value);
       joints += '\n';
-      const Isometry3 pose = actual_.pose(q);
+      const Isometry3 pose = actual.pose(q);
       const Vector3 turn = log_so3(rotation(pose));
       poses += image;
       for (Index k = 0; k < 3; ++k) poses += message(',', pose(k, 3) * 1e3);
@@ -107,6 +112,34 @@ TEST_F(CalibrateCamera, IdentifiesAnArmAndKeepsCameraAndBoard) {
   }
 }
 
+TEST_F(CalibrateCamera, FindsJointErrorsInTheSameRun) {
+  setup_.images = 80;
+  const JointErrorSizes sizes{.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0.5e-3, .harmonics = 2};
+  const WithJointErrors<DhChain<6>> geared(actual_, draw_joint_errors(actual_, sizes, 5));
+  write_images(geared);
+  const CommandResult result = calibrate(
+      "--robot abb_irb120 --data joints.csv --corners corners.csv --board board.json --camera-mount flange "
+      "--intrinsics "
+      "camera.json --joint-errors --harmonics 3 --test-every 5 --threads 1 --save m.json --report r.html --json "
+      "r.json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_NE(result.output.find("Beside joint errors, steps of the intrinsics were"), std::string::npos);
+  EXPECT_NE(result.output.find("they rest"), std::string::npos) << result.output;
+  const nlohmann::json found = results();
+  EXPECT_EQ(found.at("camera").at("converged"), true);
+  EXPECT_EQ(found.at("chosen"), "jointwise");
+  EXPECT_GE(found.at("train_rows"), 62);  // an outlier may be left out
+  EXPECT_EQ(found.at("test_rows"), 16);
+  const CalibratedRobot<6> robot = load<6>((folder_ / "m.json").string());
+  EXPECT_EQ(robot.provenance().measured, "images");
+  ASSERT_TRUE(robot.provenance().camera.has_value());
+  ASSERT_NE(robot.estimate(), nullptr);
+  EXPECT_LT(robot.provenance().held_out_error, 0.3e-3);
+  const auto stage = [&](const char* name) { return found.at("stages").at(name).at("mean_mm").get<double>(); };
+  EXPECT_LT(stage("jointwise"), 0.8 * stage("geometry")) << found.at("stages");
+  EXPECT_NE(read_file((folder_ / "r.html").string()).find("16 held-out poses"), std::string::npos);
+}
+
 TEST_F(CalibrateCamera, FindsBaseAndToolFromPosesOfTheFlange) {
   const CommandResult result = calibrate(
       "--flange-poses poses.csv --corners corners.csv --board board.json --camera-mount flange --intrinsics "
@@ -129,7 +162,7 @@ TEST_F(CalibrateCamera, RefusesWhatDoesNotBelongTogether) {
   refused(
       "--robot abb_irb120 --data joints.csv --corners corners.csv --board board.json --camera-mount flange "
       "--test-every 3",
-      2, "--test-every");
+      2, "--test-every needs --joint-errors beside --corners");
   refused("--robot abb_irb120 --data joints.csv --corners corners.csv --board board.json --camera-mount fixed", 1,
           "do not agree with the poses of the arm");
   write_file(folder_ / "small.json", R"({"fx": 500, "fy": 500, "cx": 320, "cy": 240, "width": 640, "height": 480})");

@@ -13,9 +13,12 @@
 #include "temporary_folder.hpp"
 #include "ur_published.hpp"
 #include "urdf_samples.hpp"
+#include "vernier/core/register_points.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/split.hpp"
 #include "vernier/evaluation/position_errors.hpp"
+#include "vernier/simulation/touches.hpp"
+#include "vernier/simulation/virtual_robot.hpp"
 #include "vernier/urdf.hpp"
 
 namespace vernier::export_robot_test {
@@ -112,6 +115,59 @@ TEST_F(ExportRobot, BothFilesHoldTheSameGeometryAndItsErrors) {
   }
 }
 
+// Touches of three planes, one with a gauge block, by the arm as made.
+TEST_F(ExportRobot, ContactsCalibrateAUrdf) {
+  const auto designed = read_urdf(path("arm.urdf"), "base_link", "tool0").robot.arm<6>().arm;
+  const Framed<DhChain<6>> made(with_geometric_errors(designed.chain(), {}, 7), designed.base_frame(),
+                                designed.tool_frame());
+  JointLimits<6> limits;
+  limits.lower.setConstant(-2);
+  limits.upper.setConstant(2);
+  VectorX heights = VectorX::Zero(30);
+  heights.tail(15).setConstant(0.2);
+  const VirtualObject table{ContactKind::plane, {0.5, 0.3, 0.1}, {0, 0, 1}, 0.5},
+      front{ContactKind::plane, {0.7, 0.2, 0.3}, {1, 0, 0}, 0.5},
+      side{ContactKind::plane, {0.2, 0.7, 0.3}, {0, 1, 0}, 0.5};
+  const std::vector<Contact> contacts{touch(made, table, "table", heights, limits, 0.02e-3, 1),
+                                      touch(made, front, "front", VectorX::Zero(30), limits, 0.02e-3, 2),
+                                      touch(made, side, "side", VectorX::Zero(30), limits, 0.02e-3, 3)};
+  std::string text = "contact_id,kind,offset_mm,q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad\n";
+  for (const Contact& contact : contacts)
+    for (Index i = 0; i < contact.size(); ++i) {
+      text += message(contact.name(), ",plane,", contact.known()(i) * 1e3);
+      for (Index j = 0; j < 6; ++j) text += message(',', contact.joints()(i, j));
+      text += '\n';
+    }
+  write_file(path("contacts.csv"), text);
+  const auto done =
+      run("export_robot", from_urdf + "--contacts contacts.csv --urdf touched.urdf --with-tool --json out.json");
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  const nlohmann::json json = results();
+  EXPECT_EQ(json["train_rows"], 90);
+  EXPECT_EQ(json["test_rows"], 0);
+  EXPECT_LT(json["files"][0]["mean_mm"].get<double>(), 0.05);
+  EXPECT_GT(json["as_designed"]["mean_mm"].get<double>(), 0.3);
+  EXPECT_NE(
+      read_file(path("touched.urdf")).find("fitted to 90 touches of contacts.csv; position errors of these touches:"),
+      std::string::npos);
+  const auto exported = read_urdf(path("touched.urdf"), "base_link", "tool0").robot.arm<6>().arm;
+  Rng rng(4);
+  PointRows points(100, 3), by_design(100, 3), actual(100, 3);
+  for (Index i = 0; i < 100; ++i) {
+    const JointVector<6> q = vernier_test::random_joints<6>(rng);
+    set_point(points, i, exported.position(q));
+    set_point(by_design, i, designed.position(q));
+    set_point(actual, i, made.position(q));
+  }
+  const auto registered = [&](const PointRows& of) {
+    const Isometry3 base = register_points(of, actual);
+    double sum = 0;
+    for (Index i = 0; i < 100; ++i) sum += (transformed(base, point(of, i)) - point(actual, i)).norm() / 100;
+    return sum;
+  };
+  EXPECT_LT(registered(points), 0.3 * registered(by_design));
+}
+
 TEST_F(ExportRobot, TheFactoryCalibrationIsANominalArm) {
   const auto done = run("export_robot",
                         "--robot ur10 --ur-calibration calibration.conf --data measured.csv --ur-kinematics "
@@ -135,6 +191,8 @@ TEST_F(ExportRobot, MisuseIsOneLine) {
   write_file(path("few.csv"), "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,x_mm,y_mm,z_mm\n0,0,0,0,0,0,1,2,3\n");
   write_file(path("half.urdf"), vernier_test::ur_like_urdf().substr(0, 1000));
   expect("export_robot", both, 2, "one of --urdf and --ur-kinematics is required");
+  expect("export_robot", from_urdf + "--urdf o.urdf", 2, "--data is required (or --contacts)");
+  expect("export_robot", from_urdf + "--contacts c.csv --with-base --urdf o.urdf", 2, "contacts do not show where");
   expect("export_robot", "--robot ur10 --urdf out.urdf " + data, 2, "must be a URDF file (.urdf)");
   expect("export_robot", "--robot ur10 --base-link base --ur-kinematics o.yaml " + data, 2, "are of a URDF file");
   expect("export_robot", both + "--ur-calibration calibration.conf --urdf o.urdf", 2, "--ur-calibration is for arms");

@@ -4,6 +4,7 @@
 /// @file
 /// Calibration by cameras and a printed board: intrinsics, base, tool and the arm's geometry from images alone.
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,6 +21,12 @@
 
 namespace vernier {
 
+/// Intrinsics and a shape of the board that stay as they are.
+struct HeldCameras {
+  std::vector<Camera> cameras{};  ///< one for each camera of the views
+  std::array<double, 4> shape{};  ///< see `CameraReport::held_shape`
+};
+
 /// Options of a calibration by cameras.
 struct CameraOptions {
   CameraMount mount = CameraMount::flange;  ///< where the camera is
@@ -31,6 +38,10 @@ struct CameraOptions {
   /// Whether left-out images decide on further unknowns: radial and tangential distortion, focal lengths, principal
   /// point, radial distortion of sixth order, a bent board.
   bool choose = true;
+  /// Values that intrinsics and board keep. What is free is reported all the same: how well it is known, and what its
+  /// errors do to poses.
+  std::optional<HeldCameras> held{};
+  bool bend = false;           ///< whether a bend of the board is estimated from the start on
   bool left_out = true;        ///< whether images are left out in turn to report errors at them
   Loss loss = Loss::huber;     ///< how residuals are weighted; huber tolerates wrong corners
   IdentifyOptions geometry{};  ///< which parameters of the arm are estimated, with which priors
@@ -116,8 +127,14 @@ Measurements<N> measured_poses(const CameraReport& report, const ImageRows& rows
       set_point(orientations, i, log_so3(rotation(pose.pose)));
       covariances.push_back(pose.covariance);
     }
-    out.add(Dataset<N>(joints, positions, orientations).without_approach().with_covariances(std::move(covariances)),
-            names[base]);
+    Dataset<N> poses =
+        Dataset<N>(joints, positions, orientations).without_approach().with_covariances(std::move(covariances));
+    if (!rows.origin.empty()) {
+      std::vector<Index> origins;
+      for (const ImagePose* pose : here) origins.push_back(pose->row);
+      poses = poses.from(rows.origin.rows(origins));
+    }
+    out.add(std::move(poses), names[base]);
   }
   return out;
 }

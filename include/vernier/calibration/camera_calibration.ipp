@@ -90,6 +90,8 @@ class CameraRun {
   VERNIER_LOCAL Index start_frames(const ViewNumbers& numbers, CameraState& state) const;
   /// From nothing to a fit, in stages.
   VERNIER_LOCAL Fit fit(const ViewNumbers& numbers, const CameraFreedom& free) const;
+  /// Frames and links alone, with intrinsics and shape that are held; what is free is set for the report.
+  VERNIER_LOCAL Fit fit_held(const ViewNumbers& numbers, const CameraFreedom& free) const;
   /// Frees unknowns and settles the noise.
   VERNIER_LOCAL void settle(CameraProblem& problem, const CameraFreedom& free) const;
   /// Decides on blocks by left-out images.
@@ -176,6 +178,7 @@ VERNIER_IMPL CameraFreedom CameraRun::first_freedom() const {
   CameraFreedom out;
   out.scale = board_.scale_sigma > 0;
   out.arm = nominal_.has_value();
+  out.bend = options_.bend;
   if (options_.cameras.empty()) std::fill_n(out.intrinsics.begin(), 6, true);  // up to k2
   for (const std::string& name : options_.free)
     out.intrinsics[static_cast<std::size_t>(std::find(Camera::names.begin(), Camera::names.end(), name) -
@@ -420,6 +423,23 @@ VERNIER_IMPL CameraRun::Fit CameraRun::fit(const ViewNumbers& numbers, const Cam
   return {std::move(problem), ambiguous};
 }
 
+VERNIER_IMPL CameraRun::Fit CameraRun::fit_held(const ViewNumbers& numbers, const CameraFreedom& free) const {
+  CameraState state;
+  state.arm = chain_;
+  state.cameras = options_.held->cameras;
+  const std::array<double, 4>& shape = options_.held->shape;
+  state.shape = {shape[0], Vector3(shape[1], shape[2], shape[3])};
+  const Index ambiguous = start_frames(numbers, state);
+  CameraProblem problem = problem_of(numbers, std::move(state));
+  problem.solve(30);  // frames alone
+  if (nominal_) problem.priors.arm = determined_parameters(problem);
+  CameraFreedom links;
+  links.arm = free.arm;
+  settle(problem, links);
+  problem.free = free;
+  return {std::move(problem), ambiguous};
+}
+
 VERNIER_IMPL std::vector<ViewNumbers> CameraRun::folds(const ViewNumbers& numbers) const {
   std::map<Index, Index> group_of_row;  // views of one image are left out together
   for (const std::size_t k : numbers) group_of_row.emplace(placed_[k].row, 0);
@@ -476,6 +496,10 @@ VERNIER_IMPL void CameraRun::report_images(const CameraProblem& problem, CameraR
   double sum = 0;
   Index corners = 0;
   const double ratio = out.pixel_sigma / problem.pixel_sigma, by_pixels = ratio > 0 ? ratio * ratio : 1;
+  const auto [precisions, steps] = problem.prior_terms();
+  const Index shared = out.shared_covariance.rows();
+  out.own_information = MatrixX::Zero(shared, shared);
+  out.own_gradient = VectorX::Zero(shared);
   const std::vector<Isometry3> poses = problem.poses();
   for (std::size_t v = 0; v < placed_.size(); ++v) {
     const View& view = *placed_[v].view;
@@ -499,9 +523,23 @@ VERNIER_IMPL void CameraRun::report_images(const CameraProblem& problem, CameraR
     out.images.push_back(std::move(one));
     if (const auto seen = problem.seen_pose(v))
       if (positive_definite(seen->second, 6))
-        out.poses.push_back({placed_[v].row, placed_[v].base, placed_[v].tool, seen->first, by_pixels * seen->second});
+        out.poses.push_back({placed_[v].row, placed_[v].base, placed_[v].tool, seen->first, by_pixels * seen->second,
+                             problem.effect_of_shared(v, seen->first)});
+    if (const auto seen = problem.seen_pose(v)) problem.add_own(v, seen->first, out.own_information, out.own_gradient);
   }
   out.mean = sum / static_cast<double>(corners);
+  const VectorX scales = problem.scales();
+  out.own_information /= by_pixels;  // the noise as it is
+  out.own_gradient /= by_pixels;
+  out.shared_steps.resize(shared);
+  for (Index k = 0; k < shared; ++k) {  // priors count as stated
+    const Index at = precisions.size() - shared + k;
+    out.shared_steps(k) = scales(at);
+    out.own_information(k, k) += precisions(at);
+    out.own_gradient(k) += precisions(at) * steps(at);
+  }
+  const BoardShape& shape = problem.state.shape;
+  out.held_shape = {shape.scale, shape.bend(0), shape.bend(1), shape.bend(2)};
 }
 
 VERNIER_IMPL void CameraRun::report_left_out(const CameraFreedom& chosen, CameraReport& out) const {
@@ -581,6 +619,8 @@ VERNIER_IMPL void CameraRun::report_unknowns(const CameraProblem& problem, Camer
   };
   frames(problem.state.bases, true, out.in_base, out.in_base_std);
   frames(problem.state.tools, false, out.in_flange, out.in_flange_std);
+  if (const Index shared = problem.unknowns() - at; shared > 0 && known)
+    out.shared_covariance = larger(at, shared)->block(at, at, shared, shared);
   for (std::size_t c = 0; c < problem.state.cameras.size(); ++c) {
     VectorX std = VectorX::Zero(Camera::num_parameters);
     std::vector<Index> estimated;
@@ -624,7 +664,7 @@ VERNIER_IMPL CameraReport CameraRun::run() {
   out.without_corners = matched_.without_corners;
   const ViewNumbers all = all_numbers(placed_.size());
   const CameraFreedom free = choose(all, &out.blocks);
-  const Fit best = fit(all, free);
+  const Fit best = options_.held ? fit_held(all, free) : fit(all, free);
   out.ambiguous = best.ambiguous;
   out.pixel_sigma = best.problem.scatter().pixels;
   report_unknowns(best.problem, out);

@@ -90,16 +90,16 @@ VERNIER_LOCAL MatrixX excess_over(const MatrixX& covariance, double variance) {
 VERNIER_LOCAL void add_row_noise(const VerificationInput& input, Index row, Index values, Matrix6& visit) {
   const MeasuredSet& data = input.data;
   const Matrix6 relative = data.relative_covariance(row);
-  for (Index first = 0; first < values; first += 3) {
-    const double sigma = first == 0 ? data.sigma().length : data.sigma().angle,
-                 then = first == 0 ? input.estimate.position_sigma : input.estimate.orientation_sigma;
-    MatrixX own(3, 3);
-    for (Index c = 0; c < 3; ++c)
-      for (Index r = 0; r < 3; ++r) own(r, c) = sigma * sigma * relative(first + r, first + c);
-    own = excess_over(own, then * then);
-    for (Index c = 0; c < 3; ++c)
-      for (Index r = 0; r < 3; ++r) visit(first + r, first + c) += own(r, c);
-  }
+  const auto sigma = [&](Index k) { return k < 3 ? data.sigma().length : data.sigma().angle; };
+  const auto then = [&](Index k) {  // in its units that noise is one; none of orientations that were not measured
+    return (std::max)(k < 3 ? input.estimate.position_sigma : input.estimate.orientation_sigma, 1e-9);
+  };
+  MatrixX own(values, values);
+  for (Index c = 0; c < values; ++c)
+    for (Index r = 0; r < values; ++r) own(r, c) = relative(r, c) * sigma(r) * sigma(c) / (then(r) * then(c));
+  own = excess_over(own, 1);
+  for (Index c = 0; c < values; ++c)
+    for (Index r = 0; r < values; ++r) visit(r, c) += own(r, c) * then(r) * then(c);
 }
 
 /// Covariance of the residuals of some poses: that of the calibration's unknowns, which they share, and of each visit.

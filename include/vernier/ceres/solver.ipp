@@ -6,6 +6,7 @@
 #include <ceres/ceres.h>
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "vernier/ceres/solver.hpp"
@@ -33,9 +34,11 @@ class CeresProblem {
     } else {
       for (Index row = 0; row < rows_.residuals.size();) {
         const auto i = static_cast<std::size_t>(row);
-        const bool projected = problem_.set_of(rows_.block[i]).projected();
-        const Index count = projected ? 1 : 3;
-        const double threshold = (*thresholds)[projected ? 2 : rows_.of_orientation[i] ? 1 : 0];
+        const MeasuredSet& set = problem_.set_of(rows_.block[i]);
+        const bool projected = set.projected(), together = set.correlated() && set.oriented();
+        const Index count = projected ? 1 : together ? 6 : 3;
+        double threshold = (*thresholds)[projected ? 2 : rows_.of_orientation[i] ? 1 : 0];
+        if (together) threshold *= std::sqrt(2.0);  // a norm of six rows, see `reweight`
         ceres_problem.AddResidualBlock(new Rows(*this, row, count), loss(threshold), steps_.data());
         row += count;
       }

@@ -14,8 +14,9 @@ VERNIER_IMPL std::vector<std::string> ContactReport::unobserved() const {
       "the base frame (6 directions): contacts are relative to the arm; base_x .. base_rz stay nominal"};
   if (!scale_observable)
     out.push_back(
-        "the scale of the arm (1 direction): no contact has a known length; the lengths of its links, taken "
-        "together, stay nominal");
+        "the scale of the arm (1 direction): no contact has a known length; the lengths of its links, taken together, "
+        "stay " +
+        (prior.empty() ? std::string("nominal") : "as " + prior + " has them"));
   std::string rotations;
   for (const auto& p : parameters)
     if (p.state == ParameterState::not_identifiable && !p.name.starts_with("base_")) {
@@ -35,13 +36,23 @@ VERNIER_IMPL std::string ContactReport::summary() const {
                      : status == IdentifyStatus::underdetermined ? "UNDERDETERMINED: "
                                                                  : "NOT CONVERGED: ") +
                     message + "\n";
-  out += "Touches miss what they touch by (rms): " + fixed_digits(rms_before * 1e3, 4) + " mm with nominal links, " +
-         fixed_digits(rms_after * 1e3, 4) + " mm identified.\n";
+  out += "Touches miss what they touch by (rms): " + fixed_digits(rms_before * 1e3, 4) + " mm with " +
+         (prior.empty() ? "nominal links, " : "the links of " + prior + ", ") + fixed_digits(rms_after * 1e3, 4) +
+         " mm identified.\n";
   for (const TouchedObject& o : objects)
     out += "  " + o.name + ": " + name_of(o.kind) + ", " + std::to_string(o.touches) + " touches, " +
            fixed_digits(o.rms * 1e3, 4) + " mm\n";
   out += "Parameters estimated: " + std::to_string(free.size()) + ", condition " +
          (std::isfinite(condition) ? fixed_digits(condition, 0) : std::string("infinite")) + ".\n";
+  if (!prior.empty())
+    out += "Prior: " + prior + ". By evidence the geometry has changed since by " + fixed_digits(prior_change, 2) +
+           " of the expected sizes of its errors.\n";
+  constexpr std::size_t most = 5;
+  for (std::size_t k = 0; k < suspects.size() && k < most; ++k)
+    out += "Suspect touch: " + suspects[k].where + " (" + suspects[k].contact + "), " +
+           fixed_digits(suspects[k].error * 1e3, 3) + " mm off, " + fixed_digits(suspects[k].factor, 1) +
+           " times the usual.\n";
+  if (suspects.size() > most) out += "And " + std::to_string(suspects.size() - most) + " more suspect touches.\n";
   if (object_sigma > 0) {
     out += "Standard deviations include errors that touches share: " + fixed_digits(object_sigma * 1e3, 3) +
            " mm of each object";
@@ -49,7 +60,8 @@ VERNIER_IMPL std::string ContactReport::summary() const {
     out += ".\n";
   }
   if (const auto weak = names(ParameterState::weak); !weak.empty())
-    out += "Weakly determined, held near nominal by their priors: " + comma_list(weak) + ".\n";
+    out += "Weakly determined, held near " + (prior.empty() ? std::string("nominal") : "those of " + prior) +
+           " by their priors: " + comma_list(weak) + ".\n";
   out += "Contacts do not observe (" + std::to_string(unobservable) + " of " + std::to_string(singular_values.size()) +
          " directions):\n";
   for (const std::string& sentence : unobserved()) out += "  - " + sentence + ".\n";

@@ -23,6 +23,8 @@ namespace vernier {
 /// @param contacts what is touched; touches of one object keep the same tool point
 /// @param options  which parameters are estimated; of `frames` only whether the tool is among them matters
 /// @param sensors  `contact_sigma`, and the loss
+/// @param known    the chain as an earlier calibration has it, where the identification starts and which is its prior;
+///                 null: priors are around nominal. What touches do not determine stays as it says
 /// @throws std::invalid_argument on no contacts, another number of joints, an unusable option, or touches of a plane
 ///         along a line
 /// @complexity     O(n u^2) an iteration for n touches and u unknowns
@@ -30,10 +32,11 @@ namespace vernier {
 template <NominalArm Arm>
 IdentifiedByContacts<ChainOf<Arm>> identify_by_contacts(const Arm& nominal, std::span<const Contact> contacts,
                                                         const IdentifyOptions& options = {.frames = Frames::tool},
-                                                        const SensorModel& sensors = {.loss = Loss::squared}) {
+                                                        const SensorModel& sensors = {.loss = Loss::squared},
+                                                        const KnownGeometry* known = nullptr) {
   const Framed<ChainOf<Arm>> arm = in_frames(nominal);
   const detail::GeometryByContacts found =
-      detail::identify_geometry_by_contacts(ArmGeometry(arm), contacts, options, sensors);
+      detail::identify_geometry_by_contacts(ArmGeometry(arm), contacts, options, sensors, known);
   return {found.report, {found.arm.framed(arm.model()), arm.model()}};
 }
 

@@ -16,10 +16,10 @@ namespace vernier {
 /// Where a calibration comes from.
 struct Provenance {
   std::string data_file{};              ///< name of the file of measured poses; of several, joined by commas
-  Index rows = 0;                       ///< number of poses it was fitted to, or of touches
+  Index rows = 0;                       ///< number of poses, touches or distances it was fitted to
   std::string date{};                   ///< as given by the caller
   std::string joints = "commanded";     ///< which joint values the data contain: commanded, or encoder
-  std::string measured = "poses";       ///< what was measured: poses, or positions; or contacts, or images
+  std::string measured = "poses";       ///< what was measured: poses, positions, contacts, images or distances
   double position_sigma = 0;            ///< of a visit, per component, as estimated from the data [m]; 0: unknown
   double left_out_error = 0;            ///< rms position error of poses that were left out in turn [m]; 0: unknown
   double held_out_error = 0;            ///< mean position error of poses it was not fitted to [m]; 0: unknown

@@ -72,6 +72,7 @@ struct ReportProvenance {
 struct ReportInput {
   std::string robot{};                   ///< name of the arm
   std::string title = "Calibration";     ///< what this is the report of
+  std::string what = "poses";            ///< what has errors: poses, touches of objects, distances
   std::string headline{};                ///< first sentence of the verdict; the errors follow
   std::vector<StageErrors> stages{};     ///< position errors of the poses [m], orientation errors [rad]
   StageName before = Stage::frames;      ///< the stage before

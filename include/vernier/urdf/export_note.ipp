@@ -20,8 +20,8 @@ VERNIER_IMPL std::vector<std::string> ExportNote::lines() const {
   };
   return {message("geometry of ", plain(robot), ", calibrated by Vernier ", VERNIER_VERSION_MAJOR, ".",
                   VERNIER_VERSION_MINOR, ".", VERNIER_VERSION_PATCH, ", ", plain(date)),
-          message("fitted to ", fitted_poses, " poses of ", plain(data), "; position errors of ", error_full.n,
-                  " held-out poses:"),
+          message("fitted to ", fitted_poses, ' ', what, " of ", plain(data), "; position errors of ",
+                  held_out ? message(error_full.n, " held-out ") : "these ", what, ':'),
           message("this file: ", error(error_exported)),
           message("full model (", plain(full_model), "): ", error(error_full)),
           "Do not send commands that were corrected by that model to whatever uses this file: they would be corrected "

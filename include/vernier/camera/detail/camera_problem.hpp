@@ -130,6 +130,12 @@ class CameraProblem {
   /// rotations [rad] of P, in the frame in which P is.
   /// @return nothing where its corners do not determine a pose
   VERNIER_API std::optional<std::pair<Isometry3, Matrix6>> seen_pose(std::size_t view) const;
+  /// What intrinsics and the shape of the board do to the pose that a view alone shows, at that pose: 6 x those of all
+  /// cameras and the board that are free, in steps, in their order.
+  VERNIER_API MatrixX effect_of_shared(std::size_t view, const Isometry3& pose) const;
+  /// What a view alone says of intrinsics and shape, at the pose that it shows: adds to information and gradient of the
+  /// sum of squares, of these unknowns in their order, for a unit of noise.
+  VERNIER_API void add_own(std::size_t view, const Isometry3& pose, MatrixX& information, VectorX& gradient) const;
   /// Modelled pose of any view.
   VERNIER_API Isometry3 pose_of(const PlacedView& view) const;
 

@@ -396,6 +396,38 @@ VERNIER_IMPL std::optional<std::pair<Isometry3, Matrix6>> CameraProblem::seen_po
   return std::pair{pose, Matrix6(inverse * inverse.transpose())};
 }
 
+VERNIER_IMPL MatrixX CameraProblem::effect_of_shared(std::size_t view, const Isometry3& pose) const {
+  const auto of_camera = static_cast<Index>(free_intrinsics().size()),
+             of_shape = static_cast<Index>(free_shape().size()), cameras = static_cast<Index>(state.cameras.size());
+  MatrixX out = MatrixX::Zero(6, of_camera * cameras + of_shape);
+  const MatrixX rows = view_rows(view, pose);
+  if (rows.rows() < 8) return out;
+  const MatrixX reduced = reduced_rows(rows);
+  const Matrix6 inverse = inverse_of_upper(reduced.topLeftCorner<6, 6>());
+  const MatrixX effect = matrix_product(inverse, reduced.block(0, 6, 6, of_camera + of_shape));
+  out.middleCols(of_camera * views_[view].view->camera, of_camera) = -effect.leftCols(of_camera);
+  out.rightCols(of_shape) = -effect.rightCols(of_shape);
+  return out;
+}
+
+VERNIER_IMPL void CameraProblem::add_own(std::size_t view, const Isometry3& pose, MatrixX& information,
+                                         VectorX& gradient) const {
+  const auto of_camera = static_cast<Index>(free_intrinsics().size()),
+             of_shape = static_cast<Index>(free_shape().size());
+  const MatrixX reduced = reduced_rows(view_rows(view, pose));
+  const Index own = of_camera + of_shape, rows = reduced.rows() - 6;
+  if (rows <= 0) return;
+  const MatrixX columns = reduced.block(6, 6, rows, own), residual = reduced.block(6, 6 + own, rows, 1);
+  const MatrixX squares = transposed_matrix_product(columns, columns),
+                slopes = transposed_matrix_product(columns, residual);
+  const Index first = of_camera * views_[view].view->camera, shape = gradient.size() - of_shape;
+  const auto at = [&](Index k) { return k < of_camera ? first + k : shape + k - of_camera; };
+  for (Index c = 0; c < own; ++c) {
+    gradient(at(c)) += slopes(c, 0);
+    for (Index r = 0; r < own; ++r) information(at(r), at(c)) += squares(r, c);
+  }
+}
+
 VERNIER_IMPL VectorX CameraProblem::board_errors(const PlacedView& placed, const Isometry3& pose) const {
   const View& view = *placed.view;
   const Camera& camera = state.cameras[static_cast<std::size_t>(view.camera)];

@@ -413,13 +413,23 @@ VERNIER_IMPL void CalibrationProblem::reset_weights() {
   for (Block& block : blocks_) block.weight = {1, 1};
 }
 
+/// Whether a set's rows have one weight, because their positions and orientations go together: each with a weight of
+/// its own would no longer be white, and the sum of squares that is minimised no loss of the residuals.
+VERNIER_LOCAL bool weighed_together(const MeasuredSet& set) { return set.correlated() && set.oriented(); }
+
+/// The norm of a whole row, as large as that of its position alone.
+VERNIER_LOCAL double norm_together(const MatrixX& norms, Index block) {
+  return std::sqrt((norms(block, 0) * norms(block, 0) + norms(block, 1) * norms(block, 1)) / 2);
+}
+
 /// Thresholds of norms of residuals: of positions, orientations, single numbers.
 VERNIER_LOCAL std::array<double, 3> loss_thresholds(const CalibrationProblem& problem, const MatrixX& norms) {
   std::array<std::vector<double>, 3> kinds;
   for (Index b = 0; b < problem.num_blocks(); ++b) {
     const MeasuredSet& set = problem.set_of(b);
-    kinds[set.projected() ? 2 : 0].push_back(norms(b, 0));
-    if (set.oriented()) kinds[1].push_back(norms(b, 1));
+    const bool together = weighed_together(set);
+    kinds[set.projected() ? 2 : 0].push_back(together ? norm_together(norms, b) : norms(b, 0));
+    if (set.oriented() && !together) kinds[1].push_back(norms(b, 1));
   }
   return {problem.loss_scale * robust_threshold(std::move(kinds[0]), 3),
           problem.loss_scale * robust_threshold(std::move(kinds[1]), 3),
@@ -439,6 +449,10 @@ VERNIER_IMPL std::array<double, 2> CalibrationProblem::reweight() {
     Block& block = blocks_[static_cast<std::size_t>(b)];
     const MeasuredSet& set = set_of(b);
     const double position = thresholds[set.projected() ? 2 : 0];
+    if (weighed_together(set)) {
+      if (position > 0) block.weight[0] = block.weight[1] = robust_weight(loss_, norm_together(norms, b), position);
+      continue;
+    }
     if (position > 0) block.weight[0] = robust_weight(loss_, norms(b, 0), position);
     if (set.oriented() && thresholds[1] > 0) block.weight[1] = robust_weight(loss_, norms(b, 1), thresholds[1]);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "vernier/identification/detail/shared_touch_errors.hpp"
 #include "vernier/identification/identifiable_parameters.hpp"
 #include "vernier/least_squares/estimate_covariance.hpp"
+#include "vernier/least_squares/loss.hpp"
 #include "vernier/measurements/position_sensor.hpp"
 
 namespace vernier::detail {
@@ -96,16 +98,61 @@ VERNIER_LOCAL std::vector<ParameterEstimate> contact_parameters(const ContactPro
   return out;
 }
 
+/// Adds the rows of a prior with correlations below those of measurements.
+VERNIER_LOCAL void append_prior(const JointPrior& prior, MatrixX& stack) {
+  const SymmetricEigen axes = symmetric_eigen(prior.precision);
+  const Index n = axes.values.size();
+  for (Index k = n - prior.unknowns; k < n; ++k)
+    append_row(stack, std::sqrt((std::max)(axes.values(k), 0.0)) * VERNIER_LATER(axes.vectors).col(k));
+}
+
+/// Touches that are too far off, predicted without them.
+/// @param inverse of the matrix of the normal equations
+VERNIER_LOCAL std::vector<SuspectTouch> suspect_touches(const ContactProblem& solved, const MatrixX& inverse) {
+  constexpr double limit = 5;  // standard deviations; chance exceeds it once in a million touches
+  const CalibrationProblem& problem = solved.problem;
+  CalibrationProblem unweighted = problem;
+  unweighted.reset_weights();
+  const StackedRows rows = problem.stacked(true), full = unweighted.stacked(false);
+  std::vector<SuspectTouch> all;
+  std::array<std::vector<double>, 2> kinds;  // of one value, and of three
+  std::vector<std::size_t> kind_of;
+  for (Index b = 0, row = 0; b < problem.num_blocks(); ++b) {
+    const MeasuredSet& set = problem.set_of(b);
+    const Index values = set.values();
+    const MatrixX columns = VERNIER_LATER(rows.jacobian).middleRows(row, values);
+    MatrixX kept = -1.0 * matrix_product(matrix_product(columns, inverse), columns.transpose());
+    for (Index k = 0; k < values; ++k) kept(k, k) += 1;
+    VectorX left_out = VERNIER_LATER(rows.residuals).segment(row, values);
+    const double weighted = left_out.norm(), plain = VERNIER_LATER(full.residuals).segment(row, values).norm();
+    solve_general(kept, left_out);
+    const double error = weighted > 0 ? left_out.norm() * plain / weighted : 0;
+    const Contact& contact = solved.contact(problem.station_index(b));
+    all.push_back({contact.name(), problem.row_of(b), contact.origin().where(problem.row_of(b)), error});
+    kind_of.push_back(values == 1 ? 0 : 1);
+    kinds[kind_of.back()].push_back(error);
+    row += values;
+  }
+  const std::array<double, 2> sigma{(std::max)(1.0, kinds[0].empty() ? 0 : robust_sigma(kinds[0], 1)),
+                                    (std::max)(1.0, kinds[1].empty() ? 0 : robust_sigma(kinds[1], 3))};
+  std::vector<SuspectTouch> out;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    all[k].factor = all[k].error / sigma[kind_of[k]];
+    all[k].error *= problem.set_of(static_cast<Index>(k)).sigma().length;
+    if (all[k].factor > limit) out.push_back(std::move(all[k]));
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const SuspectTouch& a, const SuspectTouch& b) { return a.factor > b.factor; });
+  return out;
+}
+
 /// Adds the covariance of what was estimated, and what follows from it, to a report with parameters.
 VERNIER_LOCAL void add_contact_covariance(const ContactProblem& solved, ContactReport& report) {
   const CalibrationProblem& problem = solved.problem;
   const auto& estimated = problem.arm.geometric();
   const StackedRows rows = problem.stacked(true);
   MatrixX stack = rows.jacobian;
-  if (problem.prior) {
-    const VectorX held = solved.scale_direction(true);
-    append_row(stack, std::sqrt(diagonal_of(problem.prior->precision).sum()) / (std::max)(held.norm(), 1e-300) * held);
-  }
+  if (problem.prior) append_prior(*problem.prior, stack);
   const VectorX precisions = problem.arm.precisions();
   const VectorX ones = VectorX::Ones(stack.rows());
   VectorX variances(precisions.size());
@@ -113,8 +160,11 @@ VERNIER_LOCAL void add_contact_covariance(const ContactProblem& solved, ContactR
   const EstimateCovariance unit(stack, ones, precisions, variances);
   double explained = static_cast<double>(precisions.size());
   if (unit.inverse.size() > 0) explained -= diagonal_of(unit.inverse).dot(precisions);
-  const double freedom = static_cast<double>(rows.residuals.size()) - explained + (problem.prior ? 1 : 0);
-  const double variance = freedom >= 1 ? rows.residuals.squaredNorm() / freedom : 1;
+  const double of_prior = problem.prior ? problem.prior->cost(problem.arm.steps()) : 0;
+  const double freedom = static_cast<double>(rows.residuals.size()) - explained +
+                         static_cast<double>(problem.prior ? problem.prior->unknowns : 0);
+  const double variance = freedom >= 1 ? (rows.residuals.squaredNorm() + of_prior) / freedom : 1;
+  if (unit.inverse.size() > 0) report.suspects = suspect_touches(solved, unit.inverse);
   SharedTouchErrors shared;
   if (unit.inverse.size() > 0 && freedom >= 1) shared = shared_touch_errors(solved, unit.inverse, variance);
   const bool known = shared.covariance.size() > 0;
@@ -122,7 +172,8 @@ VERNIER_LOCAL void add_contact_covariance(const ContactProblem& solved, ContactR
   report.joint_sigma = known ? shared.joint : 0;
   MatrixX covariance;
   if (known) {
-    const VectorX row_variance = VectorX::Constant(stack.rows(), shared.variance);
+    VectorX row_variance = VectorX::Constant(stack.rows(), shared.variance);
+    for (Index k = rows.residuals.size(); k < stack.rows(); ++k) row_variance(k) = variance;  // of the prior
     covariance = EstimateCovariance(stack, row_variance, precisions, variance * variances).covariance;
     covariance += shared.covariance;
   } else if (unit.inverse.size() > 0) {
@@ -133,6 +184,7 @@ VERNIER_LOCAL void add_contact_covariance(const ContactProblem& solved, ContactR
   if (unit.singular_values.size() > 0)
     report.observability = Observability::of(unit.singular_values, problem.num_blocks());
 
+  const ContactProblem::KnownUnknowns known_before = solved.known_unknowns();
   std::vector<Index> of_arm;
   for (std::size_t k = 0; k < estimated.size(); ++k)
     if (estimated[k].station < 0) of_arm.push_back(static_cast<Index>(k));
@@ -145,6 +197,9 @@ VERNIER_LOCAL void add_contact_covariance(const ContactProblem& solved, ContactR
     report.free.push_back(u.parameter);
     p.state = ParameterState::identified;
     if (u.precision > 0) p.prior_std = u.scale * std::sqrt(variance / u.precision);
+    for (std::size_t k = 0; k < known_before.unknowns.size(); ++k)
+      if (known_before.unknowns[k] == of_arm[i])
+        p.prior_std = u.scale * std::sqrt(known_before.covariance(static_cast<Index>(k), static_cast<Index>(k)));
     if (unit.inverse.size() == 0) continue;
     for (std::size_t j = 0; j < of_arm.size(); ++j) {
       const auto row = static_cast<Index>(i), column = static_cast<Index>(j);
@@ -170,10 +225,10 @@ VERNIER_LOCAL void add_contact_status(const ContactProblem& solved, const ArmGeo
   if (!converged) {
     report.status = IdentifyStatus::not_converged;
     report.message = message("the steps did not vanish within ", solved.options.max_iterations, " iterations");
-  } else if (report.missing > 0) {
+  } else if (report.missing > 0 && solved.known == nullptr) {  // else an earlier calibration knows the rest
     report.status = IdentifyStatus::underdetermined;
     report.message += message("; measured positions at the same joints would determine ", report.missing, " more");
-  } else if (problem.measured_values() + (problem.prior ? 1 : 0) <= estimated) {
+  } else if (problem.measured_values() + (problem.prior ? problem.prior->unknowns : 0) <= estimated) {
     report.status = IdentifyStatus::underdetermined;
     report.message = message(touches, " touches give ", problem.measured_values(), " measured values for ", estimated,
                              " unknowns of arm and objects");

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "vernier/identification/contact_report.hpp"
+#include "vernier/identification/known_geometry.hpp"
 #include "vernier/identification/options.hpp"
 #include "vernier/measurements/sensor_model.hpp"
 
@@ -21,8 +22,8 @@ struct GeometryByContacts {
 /// `vernier::identify_by_contacts` for an arm whose number of joints is known at run time.
 VERNIER_API GeometryByContacts identify_geometry_by_contacts(const ArmGeometry& nominal,
                                                              std::span<const Contact> contacts,
-                                                             const IdentifyOptions& options,
-                                                             const SensorModel& sensors);
+                                                             const IdentifyOptions& options, const SensorModel& sensors,
+                                                             const KnownGeometry* known = nullptr);
 
 }  // namespace vernier::detail
 

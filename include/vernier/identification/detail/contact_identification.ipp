@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "vernier/identification/detail/contact_identification.hpp"
 #include "vernier/identification/detail/contact_problem.hpp"
 #include "vernier/least_squares/evidence.hpp"
+#include "vernier/least_squares/factorised_equations.hpp"
 
 namespace vernier::detail {
 
@@ -51,7 +53,8 @@ VERNIER_LOCAL void size_chain_priors(ContactProblem& contacts) {
   UnknownGroup chain;
   const auto& unknowns = problem.arm.geometric();
   for (std::size_t k = 0; k < unknowns.size(); ++k)
-    if (contacts.plan.in_chain(unknowns[k].parameter)) chain.push_back(static_cast<Index>(k));
+    if (contacts.plan.in_chain(unknowns[k].parameter) && unknowns[k].precision > 0)
+      chain.push_back(static_cast<Index>(k));
   if (chain.empty()) return;
   const NormalEquations normal = problem.normal_equations();
   VectorX precisions =
@@ -61,16 +64,66 @@ VERNIER_LOCAL void size_chain_priors(ContactProblem& contacts) {
   problem.arm.set_precisions(precisions);
 }
 
-VERNIER_IMPL GeometryByContacts identify_geometry_by_contacts(const ArmGeometry& nominal,
+/// How much of an earlier calibration has changed, by evidence, and the variance of the noise; the arm moves along.
+VERNIER_LOCAL void size_change(ContactProblem& contacts) {
+  CalibrationProblem& problem = contacts.problem;
+  const auto at_change = [&](double change) {
+    contacts.known_change = change;
+    contacts.hold();
+    return solve_contacts(contacts);
+  };
+  double best = contacts.known_change;
+  for (int round = 0; round < 2; ++round) {
+    at_change(best);
+    const StackedRows rows = problem.stacked(false);
+    const VectorX none = VectorX::Zero(problem.arm.size());
+    const double prior_cost = problem.prior ? problem.prior->cost(problem.arm.steps()) : 0;
+    const Index freedom = rows.residuals.size() + (problem.prior ? problem.prior->unknowns : 0) - none.size();
+    if (freedom > 0) contacts.variance = (rows.residuals.squaredNorm() + prior_cost) / static_cast<double>(freedom);
+    constexpr std::array changes{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0};
+    std::array<double, changes.size()> evidences{};
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+      at_change(changes[k]);
+      const ContactProblem::KnownUnknowns known = contacts.known_unknowns();
+      if (known.unknowns.empty()) return;
+      MatrixX factor = known.covariance;
+      demand(cholesky(factor), contacts.known->name, ": its covariance is not positive definite");
+      const NormalEquations normal = problem.normal_equations();
+      const VectorX precisions = problem.arm.precisions(), steps = problem.arm.steps();
+      const FactorisedEquations solved(normal, precisions, steps);
+      evidences[k] = log_evidence(normal, solved, precisions, steps, problem.measured_values()) -
+                     0.5 * cholesky_log_determinant(factor);
+    }
+    constexpr double believed = 2;  // by how much the evidence of a larger change must be more, as a logarithm
+    const double highest = *std::max_element(evidences.begin(), evidences.end());
+    const auto first = std::find_if(evidences.begin(), evidences.end(),
+                                    [&](double evidence) { return evidence >= highest - believed; });
+    if (first != evidences.end()) best = changes[static_cast<std::size_t>(first - evidences.begin())];
+  }
+  at_change(best);
+}
+
+VERNIER_IMPL GeometryByContacts identify_geometry_by_contacts(const ArmGeometry& designed,
                                                               std::span<const Contact> contacts,
                                                               const IdentifyOptions& options,
-                                                              const SensorModel& sensors) {
+                                                              const SensorModel& sensors, const KnownGeometry* known) {
   sensors.validate();
   demand(!contacts.empty(), "identify_by_contacts: no contacts");
   for (const Contact& contact : contacts)
-    demand(contact.joints().cols() == nominal.joints(), "contact ", contact.name(), ": ", contact.joints().cols(),
-           " joints, the arm has ", nominal.joints());
+    demand(contact.joints().cols() == designed.joints(), "contact ", contact.name(), ": ", contact.joints().cols(),
+           " joints, the arm has ", designed.joints());
+  ArmGeometry nominal = designed;
+  if (known != nullptr) {
+    demand(known->values.size() == designed.num_parameters() &&
+               known->covariance.rows() == static_cast<Index>(known->parameters.size()),
+           known->name, ": ", known->values.size(), " parameters, the arm has ", designed.num_parameters());
+    VectorX values = designed.parameters();
+    for (Index k = ArmParameters::chain_begin; k < ArmParameters::chain_end(designed.joints()); ++k)
+      values(k) = known->values(k);
+    nominal = designed.with_parameters(values);
+  }
   ContactProblem touches(nominal, contacts, options, sensors);
+  touches.known = known;
   register_objects(touches);
   const double rms_before = touches.residual_rms();
   demand(std::isfinite(rms_before), "identify_by_contacts: no places of the objects fit the touches");
@@ -92,6 +145,7 @@ VERNIER_IMPL GeometryByContacts identify_geometry_by_contacts(const ArmGeometry&
     columns = std::move(again);
   }
   touches.estimate(columns.base, chain_precision);
+  if (known != nullptr) size_change(touches);
   for (int round = 0; round < 3 && options.priors; ++round) {
     solve_contacts(touches);
     size_chain_priors(touches);
@@ -102,6 +156,13 @@ VERNIER_IMPL GeometryByContacts identify_geometry_by_contacts(const ArmGeometry&
   GeometryByContacts out{found.with_frames(nominal.base(), found.tool()), {}};
   out.report = contact_report(touches, out.arm, columns, converged);
   out.report.rms_before = rms_before;
+  const VectorX by_design = designed.parameters();
+  for (std::size_t k = 0; k < out.report.parameters.size(); ++k)
+    out.report.parameters[k].nominal = by_design(static_cast<Index>(k));
+  if (known != nullptr) {
+    out.report.prior = known->name;
+    out.report.prior_change = touches.known_change;
+  }
   return out;
 }
 

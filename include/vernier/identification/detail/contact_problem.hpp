@@ -11,6 +11,7 @@
 #include "vernier/data/contacts.hpp"
 #include "vernier/identification/detail/calibration_problem.hpp"
 #include "vernier/identification/detail/identification_plan.hpp"
+#include "vernier/identification/known_geometry.hpp"
 #include "vernier/measurements/sensor_model.hpp"
 
 namespace vernier::detail {
@@ -21,7 +22,8 @@ struct ContactSelection {
   std::vector<std::pair<GeometricUnknown, std::vector<GeometricUnknown>>> dependent;
 };
 
-/// An arm in the frames of the objects that it touched, one station an object; refers to its arguments.
+/// An arm in the frames of the objects that it touched, one station an object; refers to its arguments. The links that
+/// are called nominal are those of an earlier calibration where there is one.
 class ContactProblem {
  public:
   VERNIER_API ContactProblem(const ArmGeometry& nominal_arm, std::span<const Contact> touched,
@@ -33,7 +35,10 @@ class ContactProblem {
   IdentificationPlan plan;
   ArmGeometry nominal;
   CalibrationProblem problem;
-  bool scale_observable = true;  ///< whether touches determine the size of arm and objects together
+  const KnownGeometry* known = nullptr;  ///< an earlier calibration; null for none
+  double known_change = 0.15;            ///< how much of it has changed since, in expected sizes of errors
+  double variance = 1;                   ///< of the whitened noise, to which the earlier calibration's is relative
+  bool scale_observable = true;          ///< whether touches determine the size of arm and objects together
 
   static constexpr double tool_precision = 1e-2;  ///< 0.1 m, so that it stays finite where little was touched
   const Contact& contact(int station) const { return contacts[static_cast<std::size_t>(station)]; }
@@ -45,8 +50,16 @@ class ContactProblem {
   VERNIER_API std::vector<GeometricUnknown> unknowns_of_objects() const;
   /// The tool's point first, so that the ends of the chain yield to it.
   VERNIER_API std::vector<GeometricUnknown> unknowns_of_arm() const;
-  /// Names what is estimated; chain parameters have priors of some precision.
+  /// Names what is estimated; chain parameters that no earlier calibration knows have priors of some precision.
   VERNIER_API void estimate(std::vector<GeometricUnknown> unknowns, double precision);
+  /// Covariance of the prior of those unknowns that an earlier calibration knows, in steps, and which these are.
+  struct KnownUnknowns {
+    std::vector<Index> unknowns;
+    MatrixX covariance;
+  };
+  VERNIER_API KnownUnknowns known_unknowns() const;
+  /// The prior that holds what touches do not: an earlier calibration, or else the scale where they do not show it.
+  VERNIER_API void hold();
   /// Separates independent from dependent unknowns at the present values, the scale aside.
   VERNIER_API ContactSelection select(const std::vector<GeometricUnknown>& candidates);
 

@@ -58,9 +58,51 @@ VERNIER_IMPL void ContactProblem::estimate(std::vector<GeometricUnknown> unknown
     u.precision = 0;
     if (plan.in_chain(u.parameter)) u.precision = precision;
     if (options.priors && u.parameter >= plan.chain_end) u.precision = tool_precision;
+    if (known != nullptr &&
+        std::find(known->parameters.begin(), known->parameters.end(), u.parameter) != known->parameters.end())
+      u.precision = 0;
   }
   problem.arm.set_geometric(std::move(unknowns));
+  hold();
+}
+
+VERNIER_IMPL ContactProblem::KnownUnknowns ContactProblem::known_unknowns() const {
+  KnownUnknowns out;
+  if (known == nullptr) return out;
+  const auto& unknowns = problem.arm.geometric();
+  std::vector<Index> source;
+  for (std::size_t k = 0; k < unknowns.size(); ++k)
+    if (const auto at = std::find(known->parameters.begin(), known->parameters.end(), unknowns[k].parameter);
+        at != known->parameters.end()) {
+      out.unknowns.push_back(static_cast<Index>(k));
+      source.push_back(at - known->parameters.begin());
+    }
+  const auto n = static_cast<Index>(source.size());
+  out.covariance.resize(n, n);
+  for (Index j = 0; j < n; ++j)
+    for (Index i = 0; i < n; ++i) {
+      const auto row = static_cast<std::size_t>(i), column = static_cast<std::size_t>(j);
+      const double scales = unknowns[static_cast<std::size_t>(out.unknowns[row])].scale *
+                            unknowns[static_cast<std::size_t>(out.unknowns[column])].scale;
+      out.covariance(i, j) =
+          known->covariance(source[row], source[column]) / scales + (i == j ? known_change * known_change : 0);
+    }
+  return out;
+}
+
+VERNIER_IMPL void ContactProblem::hold() {
   problem.prior.reset();
+  const Index size = problem.arm.size();
+  if (const KnownUnknowns of = known_unknowns(); !of.unknowns.empty()) {
+    MatrixX factor = of.covariance;
+    demand(cholesky(factor), known->name, ": its covariance is not positive definite");
+    const MatrixX precision = inverse_from_cholesky(factor);
+    problem.prior = JointPrior{MatrixX::Zero(size, size), VectorX::Zero(size), static_cast<Index>(of.unknowns.size())};
+    for (std::size_t j = 0; j < of.unknowns.size(); ++j)
+      for (std::size_t i = 0; i < of.unknowns.size(); ++i)
+        problem.prior->precision(of.unknowns[i], of.unknowns[j]) =
+            variance * precision(static_cast<Index>(i), static_cast<Index>(j));
+  }
   if (scale_observable) return;
   // Residuals of touches shrink with the arm, so its size has to be held: the lengths of its links, taken together.
   const VectorX scale = scale_direction(true);
@@ -68,7 +110,10 @@ VERNIER_IMPL void ContactProblem::estimate(std::vector<GeometricUnknown> unknown
   if (!(square > 0)) return;
   constexpr double share = 1e-6;
   const VectorX held = scale / (square * share);
-  problem.prior = JointPrior{matrix_product(held, held.transpose()), VectorX::Zero(problem.arm.size()), 1};
+  if (problem.prior && product(problem.prior->precision, scale).norm() > 0) return;  // known already
+  if (!problem.prior) problem.prior = JointPrior{MatrixX::Zero(size, size), VectorX::Zero(size), 0};
+  problem.prior->precision += matrix_product(held, held.transpose());
+  ++problem.prior->unknowns;
 }
 
 VERNIER_IMPL VectorX ContactProblem::scale_direction(bool links_alone) const {

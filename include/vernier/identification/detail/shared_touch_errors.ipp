@@ -140,7 +140,7 @@ VERNIER_IMPL SharedTouchErrors shared_touch_errors(const ContactProblem& solved,
   PriorProblem trial{NormalEquations({jacobian.rows(), jacobian.rows(), all, {}, row}), VectorX(all),
                      VectorX::Zero(all), jacobian.rows(), variance};
   if (solved.problem.prior) {
-    JointPrior held{MatrixX::Zero(all, all), VectorX::Zero(all), 1};
+    JointPrior held{MatrixX::Zero(all, all), VectorX::Zero(all), solved.problem.prior->unknowns};
     VERNIER_LATER(held.precision).topLeftCorner(unknowns, unknowns) = solved.problem.prior->precision;
     VectorX at = VectorX::Zero(all);
     VERNIER_LATER(at).head(unknowns) = solved.problem.arm.steps();

@@ -25,7 +25,8 @@ namespace vernier::detail {
 inline constexpr int model_schema_version = 5, oldest_schema_version = 2;
 inline constexpr std::array<std::string_view, 2> joint_type_names{"revolute", "prismatic"};
 inline constexpr std::array<std::string_view, 2> joint_readings{"commanded", "encoder"};
-inline constexpr std::array<std::string_view, 4> measured_names{"poses", "positions", "contacts", "images"};
+inline constexpr std::array<std::string_view, 5> measured_names{"poses", "positions", "contacts", "images",
+                                                                "distances"};
 
 /// The key of a joint's limit, or of its zero.
 VERNIER_LOCAL const char* key_of(JointType type, const char* angle, const char* length) {

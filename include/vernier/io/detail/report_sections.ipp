@@ -44,13 +44,13 @@ VERNIER_IMPL std::string audit_section(const ReportInput& input) {
 VERNIER_IMPL std::string errors_section(const ReportInput& input) {
   bool oriented = false;
   for (const StageErrors& stage : input.stages) oriented = oriented || stage.rotation.size() > 0;
-  HtmlTable table{.caption = message("Position errors of ", input.held_out ? "held-out" : "the checked", " poses [mm]",
-                                     oriented ? ", mean orientation errors [mrad]" : ""),
+  HtmlTable table{.caption = message("Position errors of ", input.held_out ? "held-out " : "the checked ", input.what,
+                                     " [mm]", oriented ? ", mean orientation errors [mrad]" : ""),
                   .head = {"model", "mean", "rms", "max", "min", "95 %"}};
   if (oriented) table.head.push_back("mean [mrad]");
   Chart chart{.title = "Cumulative distribution of position errors",
               .x_label = "position error [mm]",
-              .y_label = "share of poses [%]",
+              .y_label = "share of " + input.what + " [%]",
               .log_x = true};
   int colour = 0;
   for (const StageErrors& stage : input.stages) {
@@ -75,13 +75,13 @@ VERNIER_IMPL std::string errors_section(const ReportInput& input) {
 
 VERNIER_IMPL std::string poses_section(const ReportInput& input, const PoseView& view) {
   if (view.shown.empty()) return "";
-  std::string out =
-      paragraph(message(view.shown.size(),
-                        " poses in the arm's base frame, coloured by their position error; larger errors are "
-                        "drawn larger. Colours end at the 99th percentile, the last one stands for all above.",
-                        static_cast<Index>(view.shown.size()) < input.poses.positions.rows()
-                            ? message(" Of all ", input.poses.positions.rows(), " poses these were drawn by lot.")
-                            : ""));
+  std::string out = paragraph(
+      message(view.shown.size(), ' ', input.what,
+              " in the arm's base frame, coloured by their position error; larger errors are "
+              "drawn larger. Colours end at the 99th percentile, the last one stands for all above.",
+              static_cast<Index>(view.shown.size()) < input.poses.positions.rows()
+                  ? message(" Of all ", input.poses.positions.rows(), ' ', input.what, " these were drawn by lot.")
+                  : ""));
   out +=
       "<div id=\"view\" hidden>\n<canvas id=\"canvas\" width=\"640\" height=\"420\" tabindex=\"0\" aria-label=\"poses "
       "in space; arrow keys turn the view\"></canvas>\n<p><button type=\"button\" id=\"show-before\" "

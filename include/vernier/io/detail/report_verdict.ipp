@@ -102,11 +102,12 @@ VERNIER_IMPL std::string verdict_section(const ReportInput& input) {
               "\">", brief(interval.mean), " mm</strong> (mean; ");
   out += std::isfinite(interval.upper)
              ? message("95 % interval ", brief(interval.lower), " to ", brief(interval.upper), " mm")
-             : std::string("too few poses for an interval");
-  out += message("), 95 % of the poses within ", brief(e.p95), " mm, largest ", brief(e.max), " mm",
-                 input.before == input.after ? "." : message("; before ", brief(was.mean), " mm."), decision, "</p>\n");
+             : "too few " + html_escape(input.what) + " for an interval";
+  out += message("), 95 % of the ", html_escape(input.what), " within ", brief(e.p95), " mm, largest ", brief(e.max),
+                 " mm", input.before == input.after ? "." : message("; before ", brief(was.mean), " mm."), decision,
+                 "</p>\n");
   out +=
-      paragraph(message("Of ", e.n, input.held_out ? " held-out poses" : " poses",
+      paragraph(message("Of ", e.n, input.held_out ? " held-out " : " ", input.what,
                         input.rule.empty() ? "" : " (" + input.rule + ")",
                         input.train_poses > 0 ? message(", fitted to ", input.train_poses, " others") : "",
                         ". Rows that visit one pose count once in the mean and its interval, which is by Student's t."),

@@ -126,6 +126,14 @@ VERNIER_IMPL void solve_frames_and_weights(const MovedPoses& evaluate, const Mea
   for (int round = 0; round < 50; ++round) {
     solve_frames(evaluate, data, fit);
     if (fit.covariance.size() == 0) return;
+    if (data.correlated() && data.oriented()) {  // one scale: with two, errors that go together would no longer do so
+      const double before = fit.position_sigma;
+      const bool differs = improve(fit.position_sigma, least_position, fit.position_squares + fit.orientation_squares,
+                                   fit.position_redundancy + fit.orientation_redundancy);
+      fit.orientation_sigma *= fit.position_sigma / before;
+      if (!differs) return;
+      continue;
+    }
     const bool position = improve(fit.position_sigma, least_position, fit.position_squares, fit.position_redundancy);
     const bool orientation =
         improve(fit.orientation_sigma, least_orientation, fit.orientation_squares, fit.orientation_redundancy);

@@ -113,13 +113,22 @@ PoseCalibration calibrate_arm(const vn::RobotDescription& description, const Cal
   if (!o.prior.empty()) earlier = vn::read_model(o.prior);
   std::optional<vn::ArmPrior> prior;
   if (earlier) prior = prior_of(*earlier, N);
-  const auto measured =
-      std::make_shared<const MeasuredFiles<N>>(read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed));
+  const auto measured = [&] {
+    try {
+      return std::make_shared<const MeasuredFiles<N>>(
+          read_measurements<N>(o, robot.arm.chain().joint_types(), fit.seed));
+    } catch (const vn::DataError& error) {
+      const std::string advice = passive_joint_advice(robot, o);
+      if (advice.empty()) throw;
+      throw vn::DataError(error.what() + advice);
+    }
+  }();
   std::vector<vn::DataAudit> audits = audit_files(robot, *measured);
 
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
   options.errors.down = robot.down;
+  options.errors.controller = robot.controller;
   if (prior) options.errors.prior = &*prior;
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
     return search_priors(objective, box, o.priors == "ga", fit);

@@ -77,6 +77,9 @@ void write_reflectors(const std::string& path, const std::vector<ReflectorPoses<
   PointRows positions(n, 3);
   VectorX times(n);
   std::vector<std::string> points;
+  bool loaded = n > 0;  // rows of all of them
+  for (const ReflectorPoses<N>& one : reflectors) loaded = loaded && one.poses.payloads().rows() == one.poses.size();
+  MatrixX payloads(loaded ? n : 0, 4);
   for (Index i = 0; i < n; ++i) {
     const auto& [of, row] = rows[static_cast<std::size_t>(i)];
     const Dataset<N>& poses = reflectors[of].poses;
@@ -84,9 +87,10 @@ void write_reflectors(const std::string& path, const std::vector<ReflectorPoses<
     previous.row(i) = poses.previous().row(row);
     positions.row(i) = poses.positions().row(row);
     times(i) = poses.times()(row);
+    if (loaded) payloads.row(i) = poses.payloads().row(row);
     points.push_back(reflectors[of].point);
   }
-  write_file(path, detail::pose_text(joints, positions, PointRows(0, 3), previous, times, VectorX(), MatrixX(),
+  write_file(path, detail::pose_text(joints, positions, PointRows(0, 3), previous, times, VectorX(), payloads,
                                      joint_types, controller, {}, points));
 }
 

@@ -146,6 +146,12 @@ void print_joints(const ShownArm& arm, const vn::RobotDescription& robot) {
              robot.controller.same() ? ", those of the rows" : "; the rows follow from them:");
   for (std::size_t i = 0; i < formulas.size() && !robot.controller.same(); ++i)
     fmt::print("  row {}: {}\n", i + 1, formulas[i]);
+  if (robot.controller.motor_errors()) {
+    std::string motors;
+    for (const std::string& joint : robot.controller.erring_joints(robot.joint_types()))
+      motors += (motors.empty() ? "" : ", ") + joint;
+    fmt::print("Gears err with the angles of motors: {}\n", motors);
+  }
   fmt::print("Limits\n");
   for (int j = 0; j < arm.joints(); ++j) {
     const auto [lower, upper] = robot.limits[static_cast<std::size_t>(j)];
@@ -233,6 +239,7 @@ int run(support::Program& program) {
                                                 {"rows", robot.dof()},
                                                 {"controller_joints", arm.joints()},
                                                 {"formulas", robot.controller.formulas(robot.joint_types())},
+                                                {"errors", robot.controller.motor_errors() ? "motors" : "chain"},
                                                 {"at_zero", to_json(arm.pose(zero))},
                                                 {"joints", std::vector<double>(other.begin(), other.end())},
                                                 {"at_joints", to_json(arm.pose(other))},

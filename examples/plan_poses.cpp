@@ -170,6 +170,7 @@ support::PlanOutcome plan_arm(Settings& o, const vn::RobotDescription& descripti
                           .oriented = o.orientations || o.camera.given()};
   options.errors.drives = robot.drives;
   options.errors.down = robot.down;
+  options.errors.controller = robot.controller;
   o.sensor.apply(options.sensors);
   options.bin_count = o.cover;
   options.bound_iterations = o.bound ? 10 : 0;
@@ -305,9 +306,11 @@ int run(support::Program& program) {
         "measure as many\n",
         values, (plan.unknowns + values / all - 1) / (values / all));
   bool gap = false;
+  const std::vector<std::string> formulas = robot.controller.formulas(robot.joint_types());
   for (int j = 0; j < robot.dof(); ++j)
     if (const std::string gaps = support::gaps_of(found, j); !gaps.empty()) {
-      fmt::print("Not covered by these poses: q{} in {}\n", j + 1, gaps);
+      fmt::print("Not covered by these poses: {} in {}\n",
+                 robot.controller.same() ? fmt::format("q{}", j + 1) : formulas[static_cast<std::size_t>(j)], gaps);
       gap = true;
     }
   if (gap && o.choose == 0 && o.cover == 0) fmt::print("--cover 1 plans a pose in each of these ranges\n");

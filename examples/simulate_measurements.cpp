@@ -9,6 +9,7 @@
 #include "cli.hpp"
 #include "csv_options.hpp"
 #include "dispatch.hpp"
+#include "payload_option.hpp"
 #include "robot_choice.hpp"
 #include "simulation.hpp"
 #include "vernier/data/csv.hpp"
@@ -21,21 +22,38 @@ namespace vn = vernier;
 struct Settings {
   support::RobotOptions robot;
   support::CsvOptions csv;
+  support::PayloadOption payload{};
   std::string poses;
   double noise_mm = 0.03, noise_mrad = 0.05, backlash_mrad = 0.02, gears_urad = 200;
   bool positions_only = false, in_turn = false;
   int points = 1;
 };
 
+/// What the arm carries at each pose; no rows for nothing that is known.
+/// @throws UsageError where both the poses and the command line say so
+template <int N>
+vn::MatrixX payloads_of(const Settings& o, const vn::PlannedVisits<N>& visits) {
+  if (!o.payload.mass) return visits.payloads;
+  if (visits.payloads.rows() > 0) throw support::UsageError("--payload-kg: " + o.poses + " states payload_kg");
+  const vn::Payload payload = o.payload.payload();
+  const vn::Index poses = visits.joints.rows();
+  vn::MatrixX out(poses, 4);
+  for (vn::Index i = 0; i < poses; ++i)
+    for (vn::Index k = 0; k < 4; ++k) out(i, k) = k == 0 ? payload.mass : payload.centre(k - 1);
+  return out;
+}
+
 template <int N>
 vn::Index simulate(const Settings& o, const vn::RobotDescription& description, const std::string& out,
                    std::uint64_t seed) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   const auto types = robot.arm.model().joint_types();
-  const vn::JointRows<N> joints = vn::read_joints<N>(o.poses, types, o.csv.format());
+  const vn::PlannedVisits<N> visits = vn::read_visits<N>(o.poses, types, o.csv.format());
+  const vn::JointRows<N>& joints = visits.joints;
   const support::SimulationSettings settings{o.noise_mm * 1e-3, o.noise_mrad * 1e-3, o.backlash_mrad * 1e-3,
                                              o.gears_urad * 1e-6, !o.positions_only};
-  const std::vector<vn::Dataset<N>> measured = support::simulated(robot, joints, settings, seed, o.points);
+  const std::vector<vn::Dataset<N>> measured =
+      support::simulated(robot, joints, settings, seed, o.points, payloads_of(o, visits));
   if (o.points == 1) {
     vn::write_dataset(out, measured.front(), types, robot.controller);
     return joints.rows();
@@ -54,7 +72,9 @@ vn::Index simulate(const Settings& o, const vn::RobotDescription& description, c
 int run(support::Program& program) {
   Settings o;
   o.robot.add_to(program).required();
-  program.add_option("--poses", o.poses, "joints q1_rad.. (q1_m.. of prismatic ones), visited in their order", "FILE")
+  program
+      .add_option("--poses", o.poses,
+                  "joints q1_rad.. (q1_m.. of prismatic ones), visited in their order; may have payload_kg", "FILE")
       .required();
   o.csv.add_to(program);
   program.group(support::Group::model);
@@ -68,6 +88,8 @@ int run(support::Program& program) {
                    "30 has 1/k of it, the meshing teeth (order 100) a twentieth; 0: none",
                    "URAD")
       .not_negative();
+  o.payload.add_to(program,
+                   "what the arm carries in all poses; by default what their column payload_kg says, else nothing");
   program.add_flag("--positions-only", o.positions_only, "orientations are not measured");
   program
       .add_setting("--points", o.points,
@@ -94,7 +116,8 @@ int run(support::Program& program) {
 int main(int argc, char** argv) {
   const support::About about{
       "simulate_measurements",
-      "Simulates the measurement of an arm whose links, gears, encoders and joints have errors.",
+      "Simulates the measurement of an arm whose links, gears, encoders and joints have errors. Under a stated payload "
+      "its joints give way as well.",
       {"simulate_measurements --robot abb_irb120 --poses poses.csv --out measured.csv",
        "simulate_measurements --robot rail.json --poses poses.csv --noise-mm 0.1 --positions-only --out measured.csv"}};
   return support::run_program(about, argc, argv, run);

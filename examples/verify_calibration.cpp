@@ -55,6 +55,7 @@ int verify_arm(const support::Program& program, Options& o, const vn::SavedModel
   for (vn::Index i = 0; i < learned.rows(); ++i) learned.row(i) = robot.learned()->error(data.joints(i)).transpose();
   vn::VerifyOptions options{.base = !o.registered, .tool = o.tool, .level = o.level};
   if (o.accept_mm > 0) options.accept = o.accept_mm * 1e-3;
+  options.controller = robot.controller();
   o.sensor.apply(options.sensors);
   options.sensors.use_orientations = !o.positions_only;
   options.expected_error = robot.provenance().expected_error();

@@ -130,6 +130,7 @@ CalibrationOutcome calibrate_of<N>(const CalibrationTask& task, const vn::FitOpt
   options.arm_name = robot.name;
   options.errors.drives = robot.drives;
   options.errors.down = robot.down;
+  options.errors.controller = robot.controller;
   options.fit = fit;
   std::optional<vn::ArmPrior> prior;
   if (task.prior != nullptr) {

@@ -15,6 +15,7 @@ PlanOutcome plan_of(const PlanTask& task, std::uint64_t seed, const vn::Observer
   vn::PlanOptions options{.count = task.count, .oriented = task.oriented, .observer = observer};
   options.errors.drives = robot.drives;
   options.errors.down = robot.down;
+  options.errors.controller = robot.controller;
   vn::MeasurementConstraints constraints{.controller = robot.controller};
   if (task.box) constraints.tool_box = *task.box;
   if (task.tracker) constraints.tracker = vn::Tracker{.position = *task.tracker, .acceptance = task.acceptance};

@@ -15,7 +15,7 @@ MeasuredPoses simulate_poses(const vernier::RobotDescription& robot, const verni
   const vernier::MatrixX chain = robot.controller.same() ? joints : robot.controller.to_chain(joints);
   return dispatch_dof(robot.dof(), [&](auto n) {
     constexpr int N = n();
-    const auto measured = simulated(robot.arm<N>(), vernier::JointRows<N>(chain), settings, seed, points, observer);
+    const auto measured = simulated(robot.arm<N>(), vernier::JointRows<N>(chain), settings, seed, points, {}, observer);
     MeasuredPoses out;
     if (points == 1) {
       out.joints = joints;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <stdexcept>
 #include <vector>
@@ -24,6 +25,7 @@ struct SimulationSettings {
   double backlash = 0.02e-3;           ///< half the play of every gear [rad]
   double gears = 200e-6;               ///< standard deviation of errors of gears and encoders once a turn [rad]
   bool orientations = true;            ///< whether orientations are measured
+  double springs = 5e-6;               ///< standard deviation of the joints' compliances to payload [rad/(N m)]
 };
 
 /// A number of some joint values: other poses have other noise, the same ones the same.
@@ -34,44 +36,33 @@ inline std::uint64_t digest(const vernier::MatrixX& joints) {
   return out;
 }
 
-/// An arm whose poses are computed a few at a time, and are reported.
-template <class Arm>
-struct ObservedArm : Arm {
-  vernier::ObserverRef observer;  ///< told how many poses are done
-
-  ObservedArm(const Arm& arm, const vernier::ObserverRef& who) : Arm(arm), observer(who) {}
-
-  /// base_T_tool at n configurations.
-  /// @throws std::runtime_error where the observer requests a stop
-  std::vector<vernier::Isometry3> poses(const vernier::JointRows<Arm::dof>& joints) const {
-    constexpr vernier::Index block = 1024;
-    std::vector<vernier::Isometry3> out;
-    for (vernier::Index done = 0; done < joints.rows(); done += block) {
-      if (!observer({done, done, 0})) throw std::runtime_error("the simulation was stopped");
-      const vernier::JointRows<Arm::dof> some = joints.middleRows(done, std::min(block, joints.rows() - done));
-      const auto found = vernier::poses(static_cast<const Arm&>(*this), some);
-      out.insert(out.end(), found.begin(), found.end());
-    }
-    return out;
-  }
-};
+/// Whether two rows are under one payload.
+inline bool same_payload(const vernier::MatrixX& payloads, vernier::Index row, vernier::Index other) {
+  for (vernier::Index k = 0; k < payloads.cols(); ++k)
+    if (std::isfinite(payloads(row, k)) && payloads(row, k) != payloads(other, k)) return false;
+  return true;
+}
 
 /// Measures the virtual arm of a seed.
-/// @param joints of the chain, visited in their order
-/// @param points reflectors on the flange, the first in its place for any number of them; several measure no
-/// orientation
+/// @param joints   of the chain, visited in their order
+/// @param points   reflectors on the flange, the first in its place for any number of them; several measure no
+///                 orientation
+/// @param payloads what the arm carries, n x 4 as `Dataset::payloads` has them; no rows: nothing
 /// @param observer told of the poses of each reflector
-/// @return       the rows of each reflector
+/// @return         the rows of each reflector
 /// @throws std::runtime_error where the observer requests a stop
 template <int N>
 std::vector<vernier::Dataset<N>> simulated(const vernier::DescribedRobot<N>& robot, const vernier::JointRows<N>& joints,
                                            const SimulationSettings& settings, std::uint64_t seed, int points = 1,
+                                           const vernier::MatrixX& payloads = {},
                                            const vernier::ObserverRef& observer = {}) {
   namespace vn = vernier;
   const auto types = robot.arm.model().joint_types();
   const auto chain = vn::with_geometric_errors(robot.arm.model(), {}, vn::child_seed(seed, 0));
   vn::JointErrorSizes sizes{.harmonic = settings.gears, .harmonics = 30, .ripple = settings.gears / 20};
+  if (payloads.rows() > 0) sizes.payload = settings.springs;
   sizes.down = robot.down;
+  sizes.controller = robot.controller;
   const auto errors = vn::draw_joint_errors(chain, sizes, vn::child_seed(seed, 1));
   // the sensor stands somewhere, the reflectors are somewhere on the flange
   vn::Rng rng(vn::child_seed(seed, 2));
@@ -82,18 +73,37 @@ std::vector<vernier::Dataset<N>> simulated(const vernier::DescribedRobot<N>& rob
     return frame;
   };
   const vn::Isometry3 base = drawn(3, 1.5) * robot.arm.base();
-  vn::JointVector<N> backlash = vn::JointVector<N>::Zero();
-  for (int j = 0; j < N; ++j)
-    if (types[static_cast<std::size_t>(j)] == vn::JointType::revolute) backlash(j) = settings.backlash;
+  // gears, or motors that err, lag behind
+  const vn::MotorAngles motors(robot.controller);
+  const vn::JointRows<N> approach = vn::approach_directions<N>(vn::JointRows<N>(motors.angles(joints)));
+  vn::JointRows<N> effective = joints;
+  for (int j = 0; j < N; ++j) {
+    if (types[static_cast<std::size_t>(motors.row_of(j))] != vn::JointType::revolute) continue;
+    for (int row = 0; row < N; ++row)
+      if (const double moved = motors.none() ? (row == j ? 1 : 0) : motors.moved(row, j); moved != 0)
+        for (vn::Index i = 0; i < joints.rows(); ++i) effective(i, row) -= moved * approach(i, j) * settings.backlash;
+  }
   const vn::MeasurementNoise noise{settings.position_noise, settings.orientation_noise,
                                    settings.orientations && points == 1};
   std::vector<vn::Dataset<N>> out;
+  vn::Vector3 tool_point;  // where a payload is whose centre is not stated
   for (int point = 0; point < points; ++point) {
-    using Arm = vn::Framed<vn::WithJointErrors<vn::DhChain<N>>>;
-    const ObservedArm<Arm> arm(
-        Arm(vn::WithJointErrors<vn::DhChain<N>>(chain, errors), base, robot.arm.tool() * drawn(0.1, 1)), observer);
-    out.push_back(vn::measure_with_backlash(arm, joints, backlash, vn::approach_directions<N>(joints), noise,
-                                            vn::child_seed(seed, digest(joints) + static_cast<std::uint64_t>(point))));
+    const vn::Isometry3 tool = robot.arm.tool() * drawn(0.1, 1);
+    if (point == 0) tool_point = tool.translation();
+    std::vector<vn::Isometry3> poses;
+    constexpr vn::Index block = 1024;
+    for (vn::Index i = 0, end = 0; i < joints.rows(); i = end) {  // rows under one payload, a few at a time
+      if (!observer({i, i, 0})) throw std::runtime_error("the simulation was stopped");
+      for (end = i + 1; end < joints.rows() && end < i + block && same_payload(payloads, i, end);) ++end;
+      const vn::Payload carried = payloads.rows() > 0 ? vn::Payload::of(payloads, i).at(tool_point) : vn::Payload{};
+      const vn::Framed<vn::WithJointErrors<vn::DhChain<N>>> arm(
+          vn::WithJointErrors<vn::DhChain<N>>(chain, errors.carrying(carried)), base, tool);
+      const auto now = arm.poses(effective.middleRows(i, end - i));
+      poses.insert(poses.end(), now.begin(), now.end());
+    }
+    const vn::detail::MeasuredPoses seen = vn::detail::measured_poses(
+        poses, noise, vn::child_seed(seed, digest(joints) + static_cast<std::uint64_t>(point)));
+    out.push_back(vn::Dataset<N>(joints, seen.positions, seen.orientations).carrying(payloads));
   }
   return out;
 }

@@ -13,6 +13,7 @@
 #include "held_out.hpp"
 #include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
+#include "vernier/calibration/controller_search.hpp"
 #include "vernier/data/csv.hpp"
 #include "vernier/data/reflectors.hpp"
 #include "vernier/data/same_pose.hpp"
@@ -117,6 +118,35 @@ void add_split(MeasuredFiles<N>& out, std::vector<vn::Split<N>>& stations, const
 
 }  // namespace
 
+std::string controller_key(const vn::ControllerMap& map, std::span<const vn::JointType> types) {
+  std::string formulas;
+  for (const std::string& formula : map.formulas(types)) formulas += (formulas.empty() ? "\"" : ", \"") + formula + '"';
+  return fmt::format("\"controller\": {{\"chain\": [{}]}}", formulas);
+}
+
+template <int N>
+std::string passive_joint_advice(const vn::DescribedRobot<N>& robot, const CalibrationOptions& o) {
+  if constexpr (N > 1) {
+    if (!robot.controller.same()) return {};
+    std::optional<vn::FoundController> found;
+    try {
+      const vn::CsvText text = vn::read_csv_text(o.data.front(), o.csv.format());
+      for (const std::string& name : text.header)
+        if (name.starts_with(fmt::format("q{}_", N))) return {};  // all joints are there
+      const vn::Dataset<N - 1> data = vn::read_dataset<N - 1>(o.data.front(), {}, o.csv.format());
+      if (data.size() < 10) return {};
+      found = vn::find_passive_joint(vn::ArmGeometry(robot.arm), data.joints(), data.positions(), data.orientations());
+    } catch (const vn::DataError&) {
+      return {};  // another fault, which has been said
+    }
+    if (!found) return {};
+    return fmt::format(
+        "; its {} joints are plausible (median {:.3g} mm) with a passive joint: add {} to the robot file", N - 1,
+        found->median * 1e3, controller_key(found->map, robot.arm.chain().joint_types()));
+  }
+  return {};
+}
+
 template <int N>
 vn::Dataset<N> read_poses(const std::string& file, const CalibrationOptions& o, std::span<const vn::JointType> types) {
   const vn::Dataset<N> data = vn::read_dataset<N>(file, types, o.csv.format());
@@ -195,15 +225,11 @@ std::vector<vn::DataAudit> audit_files(const vn::DescribedRobot<N>& robot, const
   for (std::size_t s = 0; s < measured.files.size(); ++s) {
     out.push_back(measured.files[s].size() < fewest ? vn::DataAudit{} : vn::audit_data(robot.arm, measured.files[s]));
     if (!out.back().findings.empty()) fmt::print("{}: {}\n", measured.names[s], out.back().summary());
-    if (const auto map = vn::audited_controller(out.back(), robot.controller, N)) {
-      const auto types = robot.arm.chain().joint_types();
-      std::string formulas;
-      for (const std::string& formula : map->formulas(types)) formulas += (formulas.empty() ? "" : ", ") + formula;
+    if (const auto map = vn::audited_controller(out.back(), robot.controller, N))
       fmt::print(
-          "In place of other columns, state the joints of the controller: {} (controller of a robot file, or "
-          "--controller-joints)\n\n",
-          formulas);
-    }
+          "In place of other columns, add the joints of the controller to the robot file, or give their formulas to "
+          "--controller-joints:\n  {}\n\n",
+          controller_key(*map, robot.arm.chain().joint_types()));
   }
   return out;
 }
@@ -215,6 +241,7 @@ std::vector<vn::DataAudit> audit_files(const vn::DescribedRobot<N>& robot, const
                                                  std::uint64_t);                                            \
   template MeasuredFiles<N> hold_out_poses<N>(const vn::Measurements<N>&, const CalibrationOptions&,        \
                                               std::span<const vn::JointType>, std::uint64_t);               \
+  template std::string passive_joint_advice<N>(const vn::DescribedRobot<N>&, const CalibrationOptions&);    \
   template std::vector<vn::DataAudit> audit_files<N>(const vn::DescribedRobot<N>&, const MeasuredFiles<N>&);
 VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
 #undef VERNIER_INSTANTIATE

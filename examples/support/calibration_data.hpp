@@ -69,6 +69,14 @@ template <int N>
 MeasuredFiles<N> hold_out_poses(const vernier::Measurements<N>& poses, const CalibrationOptions& options,
                                 std::span<const vernier::JointType> types, std::uint64_t seed);
 
+/// A map as the key `controller` of a robot file.
+std::string controller_key(const vernier::ControllerMap& map, std::span<const vernier::JointType> types);
+
+/// What to say of a first file whose joints are one less than those of the chain: the controller with a passive joint
+/// that makes it plausible; empty where there is none, or the file lacks something else.
+template <int N>
+std::string passive_joint_advice(const vernier::DescribedRobot<N>& robot, const CalibrationOptions& options);
+
 /// Looks for faults in the files of poses and prints them, before a calibration may refuse them.
 /// @return one audit a set of poses; without findings for sets too short to be audited
 template <int N>

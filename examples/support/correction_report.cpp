@@ -116,10 +116,11 @@ std::string correction_csv(const CorrectionReport& report) {
       "singularity,singularity_deg\n";
   for (const CommandRow& row : report.rows) {
     for (const double q : row.command) text += vn::message(q, ',');
-    text +=
-        vn::message(row.status, ',', row.error * 1e3, ',', row.gate, ',', row.target, ',', row.kind, ',',
-                    row.rotation * 1e3, ',', row.deviation * 1e3, ',', row.radius * 1e3, ',',
-                    row.singularities.nearest(), ',', row.singularities.nearest_angle() * 180 / std::numbers::pi, '\n');
+    text += vn::message(row.status, ',', row.error * 1e3, ',', row.gate, ',', row.target, ',', row.kind, ',',
+                        row.rotation * 1e3, ',', row.deviation * 1e3, ',', row.radius * 1e3, ',',
+                        row.singularities.nearest(), ',');
+    if (row.singularities.known) text += vn::message(row.singularities.nearest_angle() * 180 / std::numbers::pi);
+    text += '\n';
   }
   return text;
 }

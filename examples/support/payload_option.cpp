@@ -3,13 +3,8 @@
 
 namespace support {
 
-void PayloadOption::add_to(Program& program) {
-  const Option given = program
-                           .add_option("--payload-kg", mass,
-                                       "what the arm carries, for a model of measurements with a column payload_kg; by "
-                                       "default their mean payload",
-                                       "KG")
-                           .within(0.0, 1e5);
+void PayloadOption::add_to(Program& program, const char* help) {
+  const Option given = program.add_option("--payload-kg", mass, help, "KG").within(0.0, 1e5);
   program
       .add_option("--payload-centre", centre_mm,
                   "its centre in the frame of the flange [mm]; by default at the tool point", "X,Y,Z")

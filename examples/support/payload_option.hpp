@@ -18,7 +18,10 @@ struct PayloadOption {
   std::vector<double> centre_mm{};  ///< in the frame of the flange; none: at the tool point
 
   /// Adds --payload-kg and --payload-centre to a command line.
-  void add_to(Program& program);
+  /// @param help of --payload-kg
+  void add_to(Program& program, const char* help =
+                                    "what the arm carries, for a model of measurements with a column "
+                                    "payload_kg; by default their mean payload");
   /// As the library has it.
   vernier::Payload payload() const;
 };

@@ -81,6 +81,7 @@ PoseCalibration calibrate_measured(const vn::RobotDescription& description, cons
   vn::CalibrateOptions options = o.calibrate;
   options.errors.drives = robot.drives;
   options.errors.down = robot.down;
+  options.errors.controller = robot.controller;
   if (prior) options.errors.prior = &*prior;
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
     return search_priors(objective, box, o.priors == "ga", fit);
@@ -145,9 +146,15 @@ PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, con
                                      const vernier::FitOptions& fit) {
   const CalibrationOptions o = options_for(options, robot);
   return dispatch_dof(robot.dof(), [&](auto n) {
-    return calibrate_measured<n()>(
-        robot, o, fit,
-        std::make_shared<const MeasuredFiles<n()>>(read_measurements<n()>(o, robot.joint_types(), fit.seed)));
+    try {
+      return calibrate_measured<n()>(
+          robot, o, fit,
+          std::make_shared<const MeasuredFiles<n()>>(read_measurements<n()>(o, robot.joint_types(), fit.seed)));
+    } catch (const vn::DataError& error) {
+      const std::string advice = passive_joint_advice(robot.arm<n()>(), o);
+      if (advice.empty()) throw;
+      throw vn::DataError(error.what() + advice);
+    }
   });
 }
 

@@ -156,14 +156,14 @@ py::tuple state_of(const Robot& robot) {
   for (const vn::SourceFile& file : about.files) files.append(py::make_tuple(file.name, file.hash));
   py::object controller = py::none();
   if (!about.controller.same()) controller = py::cast(about.controller.formulas(about.joint_types()));
-  return py::make_tuple(pickle_schema, about.name, about.modified, rows, py::cast(about.limits), drives,
-                        frame_of(about.base), frame_of(about.tool), about.joint_names, files, controller,
-                        about.base_known, about.tool_known,
-                        py::make_tuple(about.down.x(), about.down.y(), about.down.z()), robot.remarks);
+  return py::make_tuple(
+      pickle_schema, about.name, about.modified, rows, py::cast(about.limits), drives, frame_of(about.base),
+      frame_of(about.tool), about.joint_names, files, controller, about.base_known, about.tool_known,
+      py::make_tuple(about.down.x(), about.down.y(), about.down.z()), robot.remarks, about.controller.motor_errors());
 }
 
 Robot robot_of_state(const py::tuple& state) {
-  vn::demand(state.size() == 15 && state[0].cast<int>() == pickle_schema,
+  vn::demand(state.size() == 16 && state[0].cast<int>() == pickle_schema,
              "Robot: pickled by another version of this module");
   vn::RobotDescription about{state[1].cast<std::string>(), state[2].cast<bool>(), {}, {}, {}};
   for (const py::handle& item : state[3].cast<py::list>()) {
@@ -185,7 +185,8 @@ Robot robot_of_state(const py::tuple& state) {
     about.files.push_back({file[0].cast<std::string>(), file[1].cast<std::string>()});
   }
   if (!state[10].is_none())
-    about.controller = vn::ControllerMap(state[10].cast<std::vector<std::string>>(), about.joint_types());
+    about.controller = vn::ControllerMap(state[10].cast<std::vector<std::string>>(), about.joint_types())
+                           .with_motor_errors(state[15].cast<bool>());
   about.base_known = state[11].cast<bool>();
   about.tool_known = state[12].cast<bool>();
   const auto down = state[13].cast<py::tuple>();

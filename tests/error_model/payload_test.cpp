@@ -76,13 +76,16 @@ double mean_error(const ErrorModel<Chain>& model, const Dataset<6>& data) {
   return sum / static_cast<double>(data.size());
 }
 
-// The fitted arm has springs about its joints alone, and the payload at the tool point.
+// The fitted arm has springs at its joints, and the payload at the tool point.
 TEST(Payload, BetweenTwoThatWereMeasuredIsPredicted) {
-  const auto found = fitted(measured(120, {0, 5}, 1));
-  const double empty = mean_error(found.model(), measured(100, {0}, 2)),
-               between = mean_error(found.model(), measured(100, {2.5}, 3));
+  const auto found = fitted(measured(120, {0, 0, 5, 5}, 1));  // every other pose validates
+  const double empty = mean_error(found.model(), measured(100, {0}, 2, 0)),
+               between = mean_error(found.model(), measured(100, {2.5}, 3, 0)),
+               full = mean_error(found.model(), measured(100, {5}, 4, 0));
   EXPECT_LT(between, 1.2 * empty);
-  EXPECT_LT(empty, 0.08e-3);  // of which the sensor has 0.048
+  EXPECT_LT(full, 1.5 * empty);  // springs about the joints' axes alone leave twice as much
+  EXPECT_LT(empty, 0.05e-3);
+  EXPECT_TRUE(found.model().identified().model().joint_errors().terms().bend.has_value());
   const ErrorModel<Chain>& model = found.model();
   ASSERT_TRUE(model.identified().model().joint_errors().terms().payload);
   EXPECT_NEAR(model.identified().model().joint_errors().terms().payload->reference().mass, 2.5, 1e-12);

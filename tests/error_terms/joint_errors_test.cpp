@@ -315,6 +315,67 @@ TEST(JointErrors, EffectiveJointsArePhiBeta) {
   expect_effective_is_phi_beta<6>();
 }
 
+// A palletiser: J3 turns the forearm against the ground, and joint 4 follows without a motor. Its gears err with the
+// angles of the motors, and joint 4 with its own; gravity is that of the chain.
+TEST(JointErrors, MotorsErrByTheirOwnAngles) {
+  vn::Rng rng(82);
+  constexpr int n = 5;
+  const std::array<std::string, n> law{"J1", "J2 + 20 deg", "J3 - J2", "-J3", "-J4"};
+  const vn::ControllerMap controller(law);
+  const auto arm = vernier_test::random_chain<n>(rng);
+  vn::JointTerms terms = all_terms(arm), at_chain = terms;
+  for (vn::JointTerms* both : {&terms, &at_chain}) both->hysteresis = {0.02, 0.3};
+  terms.motors = vn::MotorAngles(controller.with_motor_errors());
+  EXPECT_TRUE(vn::MotorAngles(controller).none());
+  ASSERT_FALSE(terms.motors.none());
+  const VectorX beta = normals(rng, terms.size(), 1e-3);
+  const vn::JointErrors errors(terms, beta);
+  VectorX of_motors = beta, of_gravity = VectorX::Zero(beta.size());
+  for (const vn::JointTermBlock& block : terms.blocks())
+    for (Index k = 0; block.kind == vn::JointTermBlock::Kind::gravity && k < block.count; ++k) {
+      of_gravity(block.begin + k) = beta(block.begin + k);
+      of_motors(block.begin + k) = 0;
+    }
+  const vn::JointErrors functions_alone(at_chain, of_motors), gravity_alone(at_chain, of_gravity);
+  // motors by joints, and joints by motors, by hand
+  const auto motors = [](const vn::JointVector<n>& q) {
+    const double j2 = q(1) - 20 * pi / 180;
+    return vn::JointVector<n>{q(0), j2, q(2) + j2, -q(4), q(3)};
+  };
+  const auto moved = [](const vn::JointVector<n>& e) {
+    return RealMatrix(n, 1, {e(0), e(1), e(2) - e(1), e(4) - e(2), -e(3)});
+  };
+  for (int trial = 0; trial < 5; ++trial) {
+    const vn::JointVector<n> q = vernier_test::random_joints<n>(rng);
+    vn::JointVector<n> previous = q;
+    for (double& x : previous) x -= 0.1 * rng.normal();
+    if (trial == 4) previous(2) = std::nan("");  // so motor 3 is unknown, and no other
+    const vn::JointVector<n> u = motors(q), before = motors(previous);
+    const vn::JointVector<n> e = functions_alone.effective(u, before.data()).joints - u;
+    const RealMatrix expected = RealMatrix::of(gravity_alone.effective(q).joints) + moved(e);
+    const auto effective = [&](const vn::JointVector<n>& at) { return errors.effective(at, previous.data()); };
+    const auto found = effective(q);
+    EXPECT_LE(difference(RealMatrix::of(found.joints), expected), 1e-14);
+    vn::MatrixX dense = vn::MatrixX::Constant(n, terms.num_dense_terms(), std::nan(""));
+    terms.dense_basis(q.data(), previous.data(), dense);
+    vn::JointVector<n> harmonics;
+    for (int j = 0; j < n; ++j) harmonics(j) = errors.transmission(j, u(j));
+    const RealMatrix sum =
+        RealMatrix::of(q) + RealMatrix(dense) * RealMatrix(VectorX(beta.head(dense.cols()))) + moved(harmonics);
+    EXPECT_LE(difference(RealMatrix::of(found.joints), sum), 1e-14);
+    for (int k = 0; k < n; ++k) {
+      constexpr double h = 1e-5;
+      const RealMatrix ahead = RealMatrix::of(effective(stepped(q, k, h)).joints),
+                       behind = RealMatrix::of(effective(stepped(q, k, -h)).joints);
+      EXPECT_LE(difference(RealMatrix::of(found.derivative).col(k), (ahead - behind) / (2 * h)), 1e-8) << k;
+    }
+  }
+  vn::JointTerms of_six(6);
+  of_six.motors = terms.motors;
+  EXPECT_EQ(vernier_test::complaint([&] { vn::JointErrors(of_six, VectorX()); }),
+            "JointErrors: motors of 5 joints, expected 6");
+}
+
 // Every block at once, the configurations approached from known ones: columns lie where their coefficients do.
 TEST(JointErrors, BlocksFollowEachOtherInColumnsAndCoefficients) {
   vn::Rng rng(81);
@@ -481,14 +542,13 @@ TEST(JointErrors, CommonTermsHaveTheSameNames) {
 TEST(JointTerms, BlocksAreMadeFromTheirParameters) {
   using Kind = vn::JointTermBlock::Kind;
   const vn::DhChain<3> chain({{.joint = vn::JointType::prismatic}, {}, {}});
-  const std::map<Kind, std::vector<double>> parameters{{Kind::payload, {0, 0, -1, 2, 0, 0, 0.1}},
-                                                       {Kind::straightness, {2, -0.5, 1}},
-                                                       {Kind::gravity, {0.6, 0, -0.8}},
-                                                       {Kind::hysteresis, {0.02, 0.3}},
-                                                       {Kind::tilt, {0, -1, 0}}};
-  const std::map<Kind, Index> sizes{{Kind::gear_ratio, 3},    {Kind::coupling, 2}, {Kind::payload, 3},
-                                    {Kind::straightness, 12}, {Kind::gravity, 6},  {Kind::hysteresis, 6},
-                                    {Kind::tilt, 18}};
+  const std::map<Kind, std::vector<double>> parameters{
+      {Kind::payload, {0, 0, -1, 2, 0, 0, 0.1}}, {Kind::bend, {0, 0, -1, 2, 0, 0, 0.1}},
+      {Kind::straightness, {2, -0.5, 1}},        {Kind::gravity, {0.6, 0, -0.8}},
+      {Kind::hysteresis, {0.02, 0.3}},           {Kind::tilt, {0, -1, 0}}};
+  const std::map<Kind, Index> sizes{{Kind::gear_ratio, 3}, {Kind::coupling, 2},      {Kind::payload, 3},
+                                    {Kind::bend, 6},       {Kind::straightness, 12}, {Kind::gravity, 6},
+                                    {Kind::hysteresis, 6}, {Kind::tilt, 18}};
   for (const vn::JointTermTraits& row : vn::joint_term_rows) {
     vn::JointTerms terms(3);
     const auto of_kind = parameters.contains(row.kind) ? parameters.at(row.kind) : std::vector<double>{};

@@ -31,6 +31,58 @@ double energy(const Chain& arm, const Payload& payload, const JointVector<Chain:
   return -gravity * payload.mass * down.dot(arm.pose(q) * payload.centre);
 }
 
+/// Bends against the work of the load: with one compliance of 1 rad/(N m) the load sinks by torque^2 / weight, for the
+/// spring takes up as much as the weight gives. Their rates are differences.
+template <int N, class Convention>
+void expect_bends() {
+  Rng rng(200 + N);
+  for (int trial = 0; trial < 10; ++trial) {
+    const auto arm = vernier_test::random_chain<N, Convention>(rng, {.prismatic = 0.4});
+    const Vector3 down = vernier_test::random_direction(rng);
+    const Payload payload{5, random_point(rng)};
+    const PayloadBend bend(detail::ChainTable(arm.view()), down, {0, Vector3::Zero()});
+    const PayloadLoad load = bend.load(payload);
+    const JointVector<N> q = vernier_test::random_joints<N>(rng);
+    MatrixX basis(6, bend.size());
+    bend.basis(q.data(), load, basis);
+    const Vector3 centre = arm.pose(q) * payload.centre;
+    for (Index k = 0; k < bend.size(); ++k) {
+      const Vector3 shift = basis.col(k).template head<3>(), turn = basis.col(k).template tail<3>();
+      const double sinks = down.dot(shift + turn.cross(centre));
+      EXPECT_NEAR(gravity * payload.mass * sinks, turn.squaredNorm(), 1e-10) << k;  // |turn| is the torque
+      EXPECT_GT(turn.norm(), 1e-6) << k;
+    }
+    const VectorX springs = normals(rng, bend.size());
+    RealMatrix sum(6, 1);
+    for (Index k = 0; k < bend.size(); ++k) sum = sum + springs(k) * RealMatrix(basis).col(k);
+    MatrixX rates(6, N);
+    const RealMatrix motion = RealMatrix::of(bend.motion(q.data(), load, springs.data(), rates.data()));
+    EXPECT_LT(difference(motion, sum), 1e-10);
+    for (int k = 0; k < N; ++k) {
+      const auto at = [&](double h) {
+        const JointVector<N> moved = stepped(q, k, h);
+        return RealMatrix::of(bend.motion(moved.data(), load, springs.data()));
+      };
+      EXPECT_LT(difference(RealMatrix(rates).col(k), (at(1e-5) - at(-1e-5)) / 2e-5), 1e-5) << N << ", " << k;
+    }
+  }
+}
+
+TEST(PayloadBend, IsWhatTheWorkOfTheLoadSaysAndItsRatesAreSlopes) {
+  expect_bends<1, StandardDh>();
+  expect_bends<3, ModifiedDh>();
+  expect_bends<6, StandardDh>();
+}
+
+// A beam along x that carries 10 N at 1 m: its end goes down by c W a^2, and only the spring about y gives way.
+TEST(PayloadBend, OfABeamByHand) {
+  const DhChain<1> beam{{{{.a = 1}}}};
+  const PayloadBend bend(detail::ChainTable(beam.view()), Vector3(0, 0, -1), {0, Vector3::Zero()});
+  const double q = 0, springs[] = {3e-4, 2e-4};
+  const Vector6 motion = bend.motion(&q, {10, Vector3::Zero()}, springs);
+  EXPECT_LT(difference(RealMatrix::of(motion), RealMatrix(6, 1, {0, 0, 0, 0, 2e-3, 0})), 1e-15);
+}
+
 template <int N, class Convention>
 void expect_slopes() {
   Rng rng(100 + N);

@@ -124,7 +124,7 @@ TEST(Straightness, BesideTiltsBothMoveTheEnd) {
   const VectorX both = normals(rng, terms.size(), 1e-4);
   const JointVector<4> q = vernier_test::random_joints<4>(rng, 0.9);
   double rates[24], of_tilt[24], of_guides[24];
-  const Vector6 sum = terms.end_motion(q.data(), both.data(), rates);
+  const Vector6 sum = terms.end_motion(q.data(), {}, both.data(), rates);
   const Vector6 tilted = terms.tilt->motion(q.data(), both.data(), of_tilt),
                 guided = terms.straightness->motion(q.data(), both.data() + 24, of_guides);
   EXPECT_LE((sum - tilted - guided).norm(), 1e-18);

@@ -225,6 +225,40 @@ TEST(ArmParameterisation, ColumnsOfAnArmThatTiltsAreDifferences) {
   }
 }
 
+// Columns of errors of motors, and of unit errors of each motor.
+TEST(ArmParameterisation, ColumnsOfMotorsAreDifferences) {
+  Rng rng(7);
+  ArmParameterisation arm = example();
+  const std::array<std::string, 6> law{"J1", "J2", "J3 - J2", "-J4", "J5", "J6 + J5"};
+  JointTerms terms(6);
+  terms.motors = MotorAngles(ControllerMap(law).with_motor_errors());
+  terms.gear_ratio = terms.coupling = true;
+  terms.gravity.emplace(robot.chain);
+  terms.hysteresis = {0.05};
+  terms.tilt.emplace(robot.chain);
+  terms.transmission[1] = terms.transmission[2] = terms.transmission[4] = Fourier::up_to(2);
+  arm.set_terms(terms, VectorX::LinSpaced(terms.size(), 1e-3, 2e-3), VectorX::Ones(terms.size()));
+  arm.move(normals(rng, arm.size()));
+  const RealMatrix joints(1, 6, {0.1, -0.5, 0.3, 0.7, -0.4, 1}), previous(1, 6, {0.2, -0.6, 0.5, 0.6, -0.3, 1.2});
+  RowBlock rows;
+  arm.linearise(0, joints, previous, &rows);
+  Rows6 expanded(6, arm.size());
+  rows.expand(arm.group_sizes(), expanded);
+  for (Index k = 0; k < arm.size(); ++k) {
+    constexpr double h = 1e-2;
+    RowBlock other;
+    const RealMatrix apart = pose_difference(moved(arm, k, h).linearise(0, joints, previous, &other).front(),
+                                             moved(arm, k, -h).linearise(0, joints, previous, &other).front());
+    EXPECT_LT((RealMatrix(expanded).col(k) - apart / (2 * h)).norm(), 1e-8) << arm.names()[static_cast<std::size_t>(k)];
+  }
+  // a gear ratio is a unit error of its motor, by the motor's angle: J3 = q3 + q2
+  const Index gear = static_cast<Index>(arm.geometric().size()) + 2;
+  EXPECT_EQ(arm.names()[static_cast<std::size_t>(gear)], "gear3");
+  const RealMatrix unit = RealMatrix(rows.factor).col(2), column = RealMatrix(rows.dense).col(gear);
+  EXPECT_GT(unit.norm(), 0.1);
+  EXPECT_LT((column - arm.scales()(gear) * (0.3 - 0.5) * unit).norm(), 1e-12);
+}
+
 // Hysteresis by where each configuration came from, and rates per degree.
 TEST(ArmParameterisation, ColumnsOfHysteresisAndHeatAreDifferences) {
   Rng rng(4);

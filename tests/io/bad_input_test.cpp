@@ -275,7 +275,7 @@ TEST(BadInput, ModelFiles) {
     return damaged.dump();
   };
   reader.expect_refused(with("/schema_version", 1), "an old version");
-  reader.expect_refused(with("/schema_version", 6), "a new version");
+  reader.expect_refused(with("/schema_version", 7), "a new version");
   reader.expect_refused(with("/convention", "modified"), "a chain of the other convention");
   reader.expect_refused(with("/provenance/rows", -1), "fewer than no rows");
   reader.expect_refused(with("/provenance/rows", 1.5), "half a row");

@@ -30,7 +30,7 @@ const Features all{"CONTROLLER", "EXP",      "FALLBACK",     "GATES",     "GRAVI
                    "HYSTERESIS", "LEARNED",  "LINEAR",       "LINKS",     "LOG",          "MAP_PRODUCTS",
                    "MAP_RAW",    "MODIFIED", "ORIENTED",     "PRISMATIC", "RADIAL_BASIS", "REDUNDANT",
                    "SIGMOID",    "SINE",     "SINES",        "TANH",      "TILT",         "MAP_SINES_AND_COSINES",
-                   "PAYLOAD",    "MOTION",   "STRAIGHTNESS", "TORQUES"};
+                   "PAYLOAD",    "MOTION",   "STRAIGHTNESS", "TORQUES",   "MOTORS",       "PAYLOAD_BEND"};
 const std::vector<Features> arms{
     {},
     {"ORIENTED", "LOG", "LEARNED", "GATES", "SINES", "MAP_SINES_AND_COSINES", "TANH", "TRANSMISSION"},
@@ -41,6 +41,9 @@ const std::vector<Features> arms{
     {"LEARNED", "GATES", "MAP_RAW", "SINE", "TILT", "MOTION", "LINKS", "EXP"},
     {"PRISMATIC", "STRAIGHTNESS", "MOTION", "PAYLOAD", "TORQUES", "LINKS", "EXP"},
     {"CONTROLLER"},
+    {"CONTROLLER", "MOTORS", "TRANSMISSION"},
+    {"CONTROLLER", "MOTORS", "GATES", "FALLBACK", "LOG", "EXP", "LINEAR", "HYSTERESIS", "PAYLOAD", "PAYLOAD_BEND",
+     "MOTION", "LINKS", "TORQUES", "PRISMATIC"},
     {"CONTROLLER", "FALLBACK", "GATES", "LEARNED", "MAP_RAW", "SINE", "LOG", "EXP", "ORIENTED"}};
 
 class CText : public ::testing::Test {

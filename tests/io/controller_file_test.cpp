@@ -5,13 +5,16 @@
 #include <filesystem>
 
 #include "complaint.hpp"
+#include "laws.hpp"
 #include "real_matrix.hpp"
 #include "temporary_folder.hpp"
 #include "vernier/core/atomic_file.hpp"
+#include "vernier/core/rng.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/io/model_file.hpp"
 #include "vernier/io/robot_file.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/testing/kinematic_laws.hpp"
 
 namespace vernier::controller_file_test {
 namespace {
@@ -55,6 +58,30 @@ TEST_F(ControllerFile, ComplaintsOfTheController) {
             "controller.limits[1]: key 'upper_mm' is unknown");
   EXPECT_EQ(complaint(R"(, "controller": {"chain": ["J1", "J2", "J3"], "signs": [1]})"),
             "controller: key 'signs' is unknown");
+}
+
+TEST_F(ControllerFile, GearsErrAtTheChainUnlessTheFileSaysMotors) {
+  const std::string chain = R"(, "controller": {"chain": ["J1", "J2", "J3 - J2"])";
+  EXPECT_FALSE(load_file(chain + "}").controller.motor_errors());
+  EXPECT_FALSE(load_file(chain + R"(, "errors": "chain"})").controller.motor_errors());
+  const RobotDescription robot = load_file(chain + R"(, "errors": "motors", "drives": [{}, {"gear_ratio": 171}, {}]})");
+  EXPECT_TRUE(robot.controller.motor_errors());
+  EXPECT_FALSE(robot.controller == robot.controller.with_motor_errors(false));
+  EXPECT_TRUE(robot.arm<3>().controller == robot.controller);
+  EXPECT_EQ(robot.drives[1].gear_ratio, 171);
+  EXPECT_EQ(robot.drives[2].gear_ratio, 0);
+  EXPECT_EQ(complaint(chain + R"(, "errors": "gears"})"), "controller.errors: 'gears' is neither chain nor motors");
+  EXPECT_EQ(complaint(chain + R"(, "drives": [{}, {}, {}]})"),
+            "controller.drives: needs errors: motors; else drives are those of the rows");
+  EXPECT_EQ(complaint(chain + R"(, "errors": "motors", "drives": [{}]})"),
+            "controller.drives: has 1 entries, must have 3");
+  write_file(path_, R"({"name": "arm", "convention": "standard", "joints": [
+    {"a_mm": 312, "alpha_deg": -90, "d_mm": 0, "theta_deg": 0, "gear_ratio": 121}],
+    "controller": {"chain": ["-J1"], "errors": "motors"}})");
+  EXPECT_EQ(vernier_test::complaint([&] { static_cast<void>(load_robot(path_.string())); }),
+            path_.string() +
+                ": controller.errors: a row has gear_ratio or encoder_periods; those of motors are in "
+                "controller.drives");
 }
 
 TEST_F(ControllerFile, LimitsStandInOnePlace) {
@@ -101,7 +128,7 @@ TEST(RobotFiles, TheExamplesAreReadAndStandAsTheirMakersSay) {
     for (const auto& [lower, upper] : robot.limits) EXPECT_TRUE(std::isfinite(lower) && std::isfinite(upper));
     ++files;
   }
-  EXPECT_EQ(files, 9);
+  EXPECT_EQ(files, 10);
   const auto of = [&](const char* name) { return load_robot((folder / name).string()); };
   const auto rows_of = [](const RobotDescription& robot) { return robot.arm<6>().arm.model(); };
   EXPECT_TRUE(rows_of(of("fanuc.json")) == robots::fanuc_r2000ib_165f().chain);
@@ -169,6 +196,50 @@ TEST_F(ControllerFile, ModelFilesKeepTheController) {
   write_file(path_, broken);
   EXPECT_EQ(vernier_test::complaint([&] { static_cast<void>(read_model(path_.string())); }),
             path_.string() + ": controller.chain[0]: key 'zero_rad' is missing");
+}
+
+/// The palletiser with harmonics of its motors within ranges of these.
+CalibratedRobot<5> with_erring_motors() {
+  using Model = CalibratedRobot<5>::Model;
+  const CalibratedRobot<5> robot = palletiser();
+  const ControllerMap map = robot.controller().with_motor_errors();
+  JointTerms terms(5), few(5);
+  terms.motors = few.motors = MotorAngles(map);
+  few.hysteresis = terms.hysteresis = {0.05};
+  terms.transmission.assign(5, Fourier::up_to(2));
+  const auto chain = robot.identified().chain();
+  VectorX values(terms.size());
+  for (Index k = 0; k < values.size(); ++k) values(k) = 1e-4 * static_cast<double>(k % 7 - 3);
+  const Framed<WithJointErrors<DhChain<5>>> near{{chain, JointErrors(terms, values)}},
+      far{{chain, JointErrors(few, VectorX::Constant(few.size(), 5e-5))}};
+  const JointRows<5> measured = JointRows<5>::Random(50, 5);
+  return robot
+      .with_model(Model(robot.nominal().model(), near, far, JointCoverage<5>::covering(measured, terms.motors)),
+                  robot.provenance())
+      .with_controller(map);
+}
+
+TEST_F(ControllerFile, ModelFilesKeepWhereGearsErr) {
+  const CalibratedRobot<5> robot = with_erring_motors();
+  save(path_.string(), robot);
+  const auto back = vernier::load<5>(path_.string());
+  EXPECT_TRUE(back.controller() == robot.controller());
+  EXPECT_EQ(back.controller().motor_errors(), true);
+  JointRows<5> all(20, 5);
+  Rng rng(3);
+  for (Index i = 0; i < all.rows(); ++i) {
+    JointVector<5> q;
+    for (int j = 0; j < 5; ++j) all(i, j) = q(j) = 1.3 * rng.normal();
+    EXPECT_EQ(back.model().pose(q).matrix(), robot.model().pose(q).matrix());
+  }
+  EXPECT_TRUE(vernier_test::no_violations(testing::kinematic_model_violations(robot.model(), all)));
+  const std::string text = read_file(path_);
+  save(path_.string(), back);
+  EXPECT_EQ(read_file(path_), text);
+  EXPECT_NE(text.find("\"schema_version\": 6"), std::string::npos);
+  // a controller that says otherwise than the fit is refused
+  EXPECT_EQ(vernier_test::complaint([&] { save(path_.string(), robot.with_controller(palletiser().controller())); }),
+            "save: gears of the model err at other joints than its controller says: give the fit the same controller");
 }
 
 TEST_F(ControllerFile, CommandsOfAPassiveJointKeepItsLaw) {

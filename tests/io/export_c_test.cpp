@@ -51,8 +51,9 @@ CalibratedRobot<N, Convention> geometric(const DhChain<N, Convention>& chain, co
 
 /// Terms of every kind, each large enough to be seen; few: those that a model has outside the measured ranges.
 template <int N, class Convention>
-JointErrors joint_errors(const DhChain<N, Convention>& chain, bool few) {
+JointErrors joint_errors(const DhChain<N, Convention>& chain, bool few, const ControllerMap& controller) {
   JointTerms terms(N);
+  terms.motors = MotorAngles(controller);
   terms.gravity.emplace(chain, Vector3(0, 0.6, -0.8));
   terms.hysteresis = {0.01, 0.3};
   if (!few) {
@@ -60,6 +61,7 @@ JointErrors joint_errors(const DhChain<N, Convention>& chain, bool few) {
     terms.linear_ranges = std::vector<JointRange>(N, {-0.8, 0.6});
     terms.tilt.emplace(chain, Vector3(0.6, 0, -0.8));
     terms.payload.emplace(detail::ChainTable(chain.view()), Vector3(0, 0.6, -0.8), Payload{1, Vector3(0.1, 0, 0.2)});
+    terms.bend.emplace(detail::ChainTable(chain.view()), Vector3(0, 0.6, -0.8), Payload{1, Vector3(0.1, 0, 0.2)});
     std::vector<JointRange> ranges(N, {-0.6, 0.8});  // shorter than those of the joints
     terms.straightness.emplace(detail::ChainTable(chain.view()), ranges, 4);
     if (terms.straightness->size() == 0) terms.straightness.reset();
@@ -77,16 +79,21 @@ JointErrors joint_errors(const DhChain<N, Convention>& chain, bool few) {
     for (Index k = 0; k < terms.transmission[static_cast<std::size_t>(i)].size(); ++k)
       coefficients(terms.transmission_begin(i) + k) /= terms.transmission[static_cast<std::size_t>(i)].order(k);
   for (const JointTermBlock& block : terms.blocks())
-    for (Index k = 0; block.kind == JointTermBlock::Kind::payload && k < block.count; ++k)
+    for (Index k = 0;
+         (block.kind == JointTermBlock::Kind::payload || block.kind == JointTermBlock::Kind::bend) && k < block.count;
+         ++k)
       coefficients(block.begin + k) *= 0.05;  // of tens of newton metres
   return JointErrors(terms, coefficients).carrying({4, Vector3(-0.1, 0.05, 0.1)});
 }
 
 /// An arm with everything; the measured ranges of every joint end in the middle of its limits, some are periodic.
+/// @param controller whose motors err, if it says so; ranges are then theirs
 template <int N, class Convention>
-CalibratedRobot<N, Convention> with_everything(const DhChain<N, Convention>& chain, const JointLimits<N>& limits) {
+CalibratedRobot<N, Convention> with_everything(const DhChain<N, Convention>& chain, const JointLimits<N>& limits,
+                                               const ControllerMap& controller = {}) {
   using Model = typename CalibratedRobot<N, Convention>::Model;
   JointCoverage<N> coverage;
+  coverage.motors = MotorAngles(controller);
   for (int i = 0; i < N; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double lower = limits.lower(i), length = limits.upper(i) - lower;
@@ -97,9 +104,9 @@ CalibratedRobot<N, Convention> with_everything(const DhChain<N, Convention>& cha
   coverage.ranges[0].clear();  // a joint that has no effect
   const auto robot = geometric(chain, limits);
   const auto& arm = robot.identified();
-  const typename Model::Arm inside({arm.chain(), joint_errors(chain, false)}, tracker, probe);
-  const typename Model::Arm outside({chain, joint_errors(chain, true)}, frame(2.21, -1.4, 0.35, 0.1, -0.7, 2.01),
-                                    probe);
+  const typename Model::Arm inside({arm.chain(), joint_errors(chain, false, controller)}, tracker, probe);
+  const typename Model::Arm outside({chain, joint_errors(chain, true, controller)},
+                                    frame(2.21, -1.4, 0.35, 0.1, -0.7, 2.01), probe);
   return robot.with_model(Model(chain, inside, outside, coverage), robot.provenance());
 }
 
@@ -226,7 +233,7 @@ Differences compare(const CalibratedRobot<N, Convention>& chain, const Compiled<
     const JointVector<N> q = configuration(joints, i);
     JointVector<N> previous = configuration(joints, (i + 1) % n);
     if (i % 4 == 1)
-      for (int j = 0; j < N; ++j) previous(j) = q(j) + 0.01;
+      for (int j = 0; j < moving; ++j) previous(j) = q(j) + 0.01;
     if (i % 4 == 2) previous(N / 2) = std::nan("");  // unknown at one joint
     const bool known = i % 4 != 3;
     const auto arm = robot.approached_from(known ? previous : JointVector<N>::Constant(std::nan("")));
@@ -367,6 +374,20 @@ TEST_F(ExportC, OfAPassiveJointEqualsTheLibrary) {
   const std::string source = c_source(robot);
   EXPECT_NE(source.find("#define ARM_JOINTS 4\n"), std::string::npos);
   expect_equal(robot, 4000, 4000);
+}
+
+TEST_F(ExportC, OfMotorsThatErrEqualsTheLibrary) {
+  const DhChain<5> palletiser{
+      {{{.a = 0.3, .alpha = -1.5, .d = 0.8}, {.a = 1.2}, {.a = 1.3}, {.a = 0.25, .alpha = 1.5}, {.d = 0.2}}}};
+  JointLimits<5> limits, ranges;
+  limits.lower << -1, 0.3, -1, -1, 0;
+  limits.upper << 1, 1, 0.2, 1, 0;
+  ranges = limits;  // of motors
+  ranges.lower(4) = -0.2;
+  ranges.upper(4) = 1;
+  const std::array<std::string, 5> law{"J1", "J2 + 20 deg", "J3 - J2", "-J3", "J4"};
+  const ControllerMap map = ControllerMap(law).with_motor_errors();
+  expect_equal(counted(with_everything(palletiser, ranges, map), map, limits), 4000, 4000);
 }
 
 TEST_F(ExportC, OfWhatWasLearnedEqualsTheLibrary) {

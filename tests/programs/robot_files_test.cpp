@@ -2,6 +2,7 @@
 // Each kind of arm of examples/robots on the whole way, its joints as its controller counts them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -53,6 +54,10 @@ TEST_P(RobotFiles, PlanSimulateCalibrateVerifyCorrectExport) {
   EXPECT_NE(corrected.output.find(" targets corrected"), std::string::npos) << corrected.errors;
   const CsvText commands = read_csv_text((folder_ / "commands.csv").string());
   EXPECT_EQ(commands.header[static_cast<std::size_t>(arm.controller_joints())], "status");
+  const bool closed = arm.controller_joints() >= 6 && GetParam() != std::string("seven_axis");
+  const auto singularity =
+      std::find(commands.header.begin(), commands.header.end(), "singularity") - commands.header.begin();
+  EXPECT_EQ(commands.rows.front()[static_cast<std::size_t>(singularity)].empty(), !closed);
   const std::string source = done("export_c' --model model.json --out arm.h");
   EXPECT_NE(read_file(folder_ / "arm.h").find(message("#define ARM_JOINTS ", arm.controller_joints(), "\n")),
             std::string::npos);
@@ -60,7 +65,7 @@ TEST_P(RobotFiles, PlanSimulateCalibrateVerifyCorrectExport) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, RobotFiles,
                          ::testing::Values("six_axis", "fanuc", "kuka", "palletiser", "scara", "rail", "positioner",
-                                           "ceiling", "seven_axis"),
+                                           "ceiling", "seven_axis", "parallelogram"),
                          [](const auto& kind) { return std::string(kind.param); });
 
 class ControllerRuns : public RobotFiles {
@@ -109,6 +114,72 @@ TEST_F(ControllerRuns, TheArmIsThatOfACalibrationInChainJoints) {
   expect_the_same_arm<6>(file("fanuc"), "q1 ");
   expect_the_same_arm<6>(file("kuka"), "-J1: ");
   expect_the_same_arm<5>(file("palletiser"), "q1 ");
+}
+
+// Gears that err with the angles of motors are found where the robot file says so, and else leave errors behind.
+TEST_F(ControllerRuns, GearsErrAtMotorsWhereTheFileSaysSo) {
+  const std::string robot = file("parallelogram");
+  nlohmann::json json = nlohmann::json::parse(read_file(robot));
+  json["controller"].erase("errors");
+  write_file(folder_ / "chain.json", json.dump());
+  done("plan_poses' --robot " + robot + " --count 150 --candidates 500 --orientations --seed 1 --out plan.csv");
+  done("simulate_measurements' --robot " + robot + " --poses plan.csv --seed 2 --gears-urad 400 --out measured.csv");
+  const auto error = [&](const std::string& arm, const std::string& more) {
+    done("calibrate' --robot " + arm + " --data measured.csv --test-every 3 --json results.json" + more);
+    const nlohmann::json found = results("results.json");
+    return found["stages"][found["chosen"].get<std::string>()]["mean_mm"].get<double>();
+  };
+  EXPECT_LT(error(robot, " --save model.json"), 0.6 * error("chain.json", " --save other.json"));
+  // what an earlier calibration knows of motors says nothing of joints
+  const auto refused =
+      run("calibrate' --robot chain.json --data measured.csv --test-every 3 --prior model.json --save x.json");
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_NE(refused.errors.find("err at motors, those of this robot at joints of the chain"), std::string::npos)
+      << refused.errors;
+}
+
+// A file of four joints for a chain of five: the passive joint that makes it plausible is named as a key to be pasted.
+TEST_F(ControllerRuns, TheMapOfAPassiveJointIsNamed) {
+  const std::string robot = file("palletiser");
+  measure(robot, 40, 1, "measured.csv");
+  nlohmann::json json = nlohmann::json::parse(read_file(robot));
+  const nlohmann::json controller = json["controller"];
+  json.erase("controller");
+  write_file(folder_ / "chain.json", json.dump());
+  const auto refused = run("calibrate' --robot chain.json --data measured.csv --test-every 5");
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_NE(refused.errors.find("q5_"), std::string::npos) << refused.errors;
+  const std::string key = R"("controller": {"chain": ["J1", "J2", "-J2 + J3", "-J3", "J4"]})";
+  EXPECT_NE(refused.errors.find(key), std::string::npos) << refused.errors;
+  json.update(nlohmann::json::parse("{" + key + "}"));
+  json["controller"]["limits"] = controller["limits"];
+  write_file(folder_ / "pasted.json", json.dump());
+  done("calibrate' --robot pasted.json --data measured.csv --test-every 5");
+}
+
+// Planned, simulated, calibrated, verified and corrected under payloads.
+TEST_F(ControllerRuns, PayloadsGoTheWholeWay) {
+  const std::string robot = file("six_axis");
+  done("plan_poses' --robot " + robot + " --count 60 --candidates 300 --orientations --seed 1 --out plan.csv");
+  const CsvText plan = read_csv_text((folder_ / "plan.csv").string());
+  std::string text = "payload_kg";
+  for (int j = 0; j < 6; ++j) text += "," + plan.header[static_cast<std::size_t>(j)];
+  for (std::size_t i = 0; i < plan.rows.size(); ++i) {
+    text += i % 2 == 0 ? "\n0" : "\n6";
+    for (int j = 0; j < 6; ++j) text += "," + plan.rows[i][static_cast<std::size_t>(j)];
+  }
+  write_file(folder_ / "loaded.csv", text + "\n");
+  const std::string simulate = "simulate_measurements' --robot " + robot + " --seed 2 --poses ";
+  done(simulate + "loaded.csv --out measured.csv");
+  done(simulate + "plan.csv --out fresh.csv --payload-kg 3");
+  const auto both = run(simulate + "loaded.csv --out x.csv --payload-kg 3");
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_NE(both.errors.find("loaded.csv states payload_kg"), std::string::npos) << both.errors;
+  done("calibrate' --robot " + robot + " --data measured.csv --test-every 5 --save model.json");
+  EXPECT_NE(done("verify_calibration' --model model.json --data fresh.csv").find("still valid"), std::string::npos);
+  done("correct' --model model.json --targets plan.csv --out at0.csv --payload-kg 0");
+  done("correct' --model model.json --targets plan.csv --out at6.csv --payload-kg 6");
+  EXPECT_NE(read_file(folder_ / "at0.csv"), read_file(folder_ / "at6.csv"));
 }
 
 TEST_F(ControllerRuns, FormulasOfTheCommandLineAreThoseOfTheFile) {

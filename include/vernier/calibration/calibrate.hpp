@@ -199,9 +199,11 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
   }
   for (std::size_t s = poses.size(); s < sets.size(); ++s)
     out.others.push_back(detail::fitted_set(out.errors.models()[s], sets[s]));
-  out.coverage = JointCoverage<N>::covering(joints);
+  const MotorAngles motors(options.errors.controller);
+  out.coverage = JointCoverage<N>::covering(joints, motors);
   for (int i = 0; i < N; ++i)
-    out.coverage.periodic[static_cast<std::size_t>(i)] = nominal.model().row(i).joint == JointType::revolute;
+    out.coverage.periodic[static_cast<std::size_t>(i)] =
+        nominal.model().row(motors.row_of(i)).joint == JointType::revolute;
   if (!residuals.empty())
     out.median_error =
         ErrorStatistics::of(Eigen::Map<const VectorX>(residuals.data(), static_cast<Index>(residuals.size()))).median;

@@ -76,8 +76,9 @@ struct Calibration {
   std::vector<LearnedRemainder<dof>> remainders{};  ///< those of them that were learned from all poses
   std::optional<std::size_t> deployed_remainder{};  ///< which of them is deployed; none where cross-validation
                                                     ///< supports none
-  JointCoverage<dof> coverage{};        ///< measured joint ranges, and the range of validity: these widened a little
-  Index poses = 0;                      ///< number of poses it was fitted to
+  JointCoverage<dof> coverage{};  ///< measured ranges of the joints, or of motors that err, and the range of validity:
+                                  ///< these widened a little
+  Index poses = 0;                ///< number of poses it was fitted to
   std::vector<FittedSet> others{};      ///< sets of measurements beside the poses
   bool oriented = false;                ///< whether orientations were used
   SensorModel sensors{};                ///< as given

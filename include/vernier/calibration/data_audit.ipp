@@ -14,6 +14,7 @@
 #include "vernier/calibration/detail/audit_hypotheses.hpp"
 #include "vernier/calibration/detail/audit_rows.hpp"
 #include "vernier/core/detail/number_text.hpp"
+#include "vernier/core/same_value.hpp"
 
 namespace vernier {
 
@@ -72,12 +73,15 @@ VERNIER_LOCAL std::vector<DataFinding> global_findings(const HypothesisFit& foun
       break;
     case FaultKind::joint_sign:
     case FaultKind::joint_coupling:
-      if (h.coupled >= 0)
-        add(FaultKind::joint_coupling, h.coupled, h.factor,
-            message("joint ", h.coupled + 1, h.factor > 0 ? " counts joint " : " counts against joint ", h.coupled,
-                    " as well: ", h.factor > 0 ? "subtract the column of joint " : "add the column of joint ",
-                    h.coupled, h.factor > 0 ? " from its own" : " to its own",
-                    h.reversed.empty() ? "" : " before any sign is reversed"));
+      for (int j = static_cast<int>(h.couplings.size()) - 1; j > 0; --j) {
+        const double factor = h.couplings[static_cast<std::size_t>(j)];
+        if (same_value(factor, 0)) continue;
+        add(FaultKind::joint_coupling, j, factor,
+            message("joint ", j + 1, factor > 0 ? " counts joint " : " counts against joint ", j,
+                    " as well: ", factor > 0 ? "subtract the column of joint " : "add the column of joint ", j,
+                    factor > 0 ? " from its own" : " to its own",
+                    h.faults() > 1 ? " before other columns are changed" : ""));
+      }
       for (const int joint : h.reversed)
         add(FaultKind::joint_sign, joint, 0,
             message("joint ", joint + 1, " counts in the other direction: reverse the sign of its column"));
@@ -102,7 +106,7 @@ VERNIER_LOCAL DataFinding unexplained_finding(const ErrorStatistics& registered,
           registered.median,
           message("all rows: nothing makes the data plausible, the nominal arm misses them by ",
                   brief(registered.median * 1e3),
-                  " mm (median) in any frames, whichever units, signs of all joints, coupled or shifted joints, "
+                  " mm (median) in any frames, whichever units, signs, couplings or zeros of joints, shifted rows, "
                   "mirrored frames ",
                   oriented ? "or conventions of orientations " : "",
                   "are assumed: look for another arm, exchanged columns, poses of other joints, or several faults at "
@@ -251,6 +255,7 @@ VERNIER_IMPL DataAudit audit_data(const ArmGeometry& nominal, const MeasuredSet&
 }  // namespace detail
 VERNIER_IMPL std::optional<ControllerMap> audited_controller(const DataAudit& audit, const ControllerMap& controller,
                                                              int chain_joints) {
+  // couplings are those of the columns as they were read: the last joint comes first
   const Index joints = controller.joints(chain_joints);
   MatrixX factors(chain_joints, joints);
   VectorX zeros(chain_joints);
@@ -271,7 +276,8 @@ VERNIER_IMPL std::optional<ControllerMap> audited_controller(const DataAudit& au
       zeros(finding.joint) = -zeros(finding.joint);
       found = true;
     }
-  return found ? std::optional<ControllerMap>(ControllerMap(factors, zeros)) : std::nullopt;
+  if (!found) return std::nullopt;
+  return ControllerMap(factors, zeros).with_motor_errors(controller.motor_errors());
 }
 
 }  // namespace vernier

@@ -190,19 +190,23 @@ CalibrationReport evaluate(const Calibration<Chain>& calibration, const Measurem
   for (Index i = 0; i < out.gates.size(); ++i)
     if (out.gates(i) >= 1) out.max_degradation = (std::max)(out.max_degradation, of_chosen(i) - geometry(i));
   const MatrixX chain_limits = controller.chain_limits(limits.lower, limits.upper);
-  const std::vector<std::string> formulas = controller.same()
-                                                ? std::vector<std::string>(N)
-                                                : controller.formulas(errors.model().nominal().model().joint_types());
+  const std::vector<std::string> formulas =
+      controller.same() ? std::vector<std::string>(N)
+                        : controller.erring_joints(errors.model().nominal().model().joint_types());
+  const MotorAngles& motors = calibration.coverage.motors;
+  const MatrixX shown = motors.angles(joints);
   for (int j = 0; j < N; ++j) {
     JointReport joint;
-    joint.revolute = errors.model().nominal().model().row(j).joint == JointType::revolute;
-    for (const auto& data : test)
-      joint.held_out.insert(joint.held_out.end(), data.joints().col(j).begin(), data.joints().col(j).end());
+    const int row = motors.row_of(j);
+    const bool of_controller = !motors.none() && j < controller.joints();
+    joint.revolute = errors.model().nominal().model().row(row).joint == JointType::revolute;
+    joint.held_out.assign(shown.col(j).begin(), shown.col(j).end());
     const auto k = static_cast<std::size_t>(j);
     for (const auto& range : calibration.coverage.measured[k])
       joint.measured_ranges.emplace_back(range.lower, range.upper);
     joint.valid_ranges = detail::within_limits(calibration.coverage.ranges[k], joint.measured_ranges,
-                                               chain_limits(j, 0), chain_limits(j, 1));
+                                               of_controller ? limits.lower(j) : chain_limits(row, 0),
+                                               of_controller ? limits.upper(j) : chain_limits(row, 1));
     if (formulas[k] != message('J', j + 1)) joint.formula = formulas[k];
     detail::describe_transmission(errors, j, joint);
     out.joints.push_back(std::move(joint));

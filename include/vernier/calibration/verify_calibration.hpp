@@ -32,13 +32,14 @@ struct VerifyOptions {
   /// Position error that the calibration states for poses it was not fitted to [m]; 0: unknown. Ten times as much left
   /// after registration is remarked upon.
   double expected_error = 0;
-  bool fitted_poses = false;  ///< the poses are known to be those that the calibration was fitted to
+  bool fitted_poses = false;   ///< the poses are known to be those that the calibration was fitted to
+  ControllerMap controller{};  ///< after whose joints the report names those of the chain
 
   /// @throws std::invalid_argument naming the value
   VERNIER_API void validate() const;
 };
 
-/// What a check says of one joint.
+/// What a check says of one joint, or of one motor where motors err (`MotorAngles`).
 struct JointCheck {
   bool determined = false;    ///< whether the poses tell its zero from what was registered
   double zero_change = 0;     ///< estimated change of its zero, everything else unchanged [rad, m]
@@ -76,6 +77,8 @@ struct VerificationReport {
   double mean_upper = 0;          ///< upper end of its 95 % interval by Student's t [m]
   VerifyOptions options{};        ///< as given
 
+  /// A joint in words, from 0: its number, or its formula in joints of the controller.
+  VERNIER_API std::string joint_name(std::size_t joint) const;
   /// One sentence: whether the calibration is still valid, and if not, what has changed.
   VERNIER_API std::string verdict() const;
   /// What to do, a sentence each.

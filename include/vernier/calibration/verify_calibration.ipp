@@ -247,6 +247,10 @@ VERNIER_IMPL VerificationReport verified(const VerificationInput& input, const V
                            data.oriented() && input.registration && input.registration->probe_turned};
   VectorX residual(values * n);
   MatrixX registered(values * n, update.size()), changes(values * n, 3 * joints);
+  const MotorAngles& motors = input.estimate.arm.terms().motors;
+  const MatrixX angles = motors.angles(data.joints);
+  MatrixX erring = input.jacobians;  // columns of the joints, or of the motors that err
+  for (Index i = 0; i < n && !motors.none(); ++i) motors.to_motors(erring.data() + 6 * joints * i, 6);
   out.as_fitted.resize(n);
   if (values == 6) out.rotations_as_fitted.resize(n);
   for (Index i = 0; i < n; ++i) {
@@ -262,7 +266,7 @@ VERNIER_IMPL VerificationReport verified(const VerificationInput& input, const V
       residual(k) = v < 3 ? shift(v) : turn(v - 3);
       for (Index c = 0; c < registered.cols(); ++c) registered(k, c) = frames(v, c);
       for (Index j = 0; j < joints; ++j) {
-        const double q = data.joints(i, j), effect = jacobian[6 * j + v];
+        const double q = angles(i, j), effect = erring(v, joints * i + j);
         changes(k, j) = effect;
         changes(k, joints + 2 * j) = std::cos(q) * effect;
         changes(k, joints + 2 * j + 1) = std::sin(q) * effect;
@@ -329,15 +333,19 @@ VERNIER_LOCAL std::string named_changes(const VerificationReport& report) {
     out += out.empty() ? "" : "; ";
     if (joint.zero_changed)
       out +=
-          message("the zero of joint ", j + 1, " moved by ", brief(joint.zero_change * 1e3), " +- ",
+          message("the zero of joint ", report.joint_name(j), " moved by ", brief(joint.zero_change * 1e3), " +- ",
                   brief(1.96 * joint.zero_std * 1e3), report.joint_types[j] == JointType::revolute ? " mrad" : " mm");
     else
-      out += message("the transmission of joint ", j + 1, " changed");
+      out += message("the transmission of joint ", report.joint_name(j), " changed");
   }
   return out;
 }
 
 }  // namespace detail
+
+VERNIER_IMPL std::string VerificationReport::joint_name(std::size_t joint) const {
+  return options.controller.same() ? message(joint + 1) : options.controller.erring_joints(joint_types)[joint];
+}
 
 VERNIER_IMPL std::string VerificationReport::verdict() const {
   using detail::brief;
@@ -399,18 +407,21 @@ VERNIER_IMPL std::vector<std::string> VerificationReport::advice() const {
   }
   for (std::size_t j = 0; j < joints.size(); ++j)
     if (!joints[j].determined)
-      out.push_back(
-          message("These poses cannot tell a change of the zero of joint ", j + 1, " from a motion of base or tool."));
+      out.push_back(message("These poses cannot tell a change of the zero of joint ", joint_name(j),
+                            " from a motion of base or tool."));
   return out;
 }
 
 VERNIER_IMPL std::string VerificationReport::summary() const {
   using detail::brief;
-  std::string out = verdict() + "\n\njoint  zero moved by  +- (95 %)         p  p once a turn\n";
+  std::size_t widest = 5;
+  for (std::size_t j = 0; j < joints.size(); ++j) widest = (std::max)(widest, joint_name(j).size());
   const auto column = [](const std::string& text, std::size_t width) { return detail::at_right(text, width); };
+  std::string out =
+      verdict() + "\n\n" + column("joint", widest) + "  zero moved by  +- (95 %)         p  p once a turn\n";
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const JointCheck& joint = joints[j];
-    out += column(message(j + 1), 5);
+    out += column(joint_name(j), widest);
     if (joint.determined)
       out += column(detail::fixed_digits(joint.zero_change * 1e3, 4), 12) +
              (joint_types[j] == JointType::revolute ? " mrad" : " mm  ") +

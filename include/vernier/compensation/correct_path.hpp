@@ -61,7 +61,7 @@ struct PathPoint {
   double deviation;        ///< of the tool from the line of the linear move to it, as the model predicts [m]
   double ends_only;        ///< deviation of the whole linear move to a target, were its ends alone corrected [m]
   double gate;             ///< share of the learned correction that was used
-  SingularityDistances singularities;  ///< of the nominal arm; all 0 without a closed form
+  SingularityDistances singularities;  ///< of the nominal arm; not known without a closed form
 };
 
 /// Corrected commands of a path, in their order.
@@ -168,7 +168,7 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
     if constexpr (branches_known) {
       return closed_form.distances(q);
     } else {
-      return SingularityDistances{};
+      return SingularityDistances{.known = false};
     }
   };
   const auto cost = [&](const PathJoints& q) {

@@ -12,6 +12,12 @@
 
 namespace vernier {
 
+namespace detail {
+
+inline constexpr int most_controller_joints = 64;
+
+}  // namespace detail
+
 /// How the M joint values of a controller become the N of a chain, M <= N: `q_chain = A q_controller + b`. A has whole
 /// numbers: signs, and couplings of joints. b are zeros [rad, m]. A palletiser has fewer controller joints than its
 /// chain, because a joint of its wrist is passive.
@@ -68,6 +74,9 @@ class ControllerMap {
   /// The formulas that make this map.
   /// @param chain types of the chain's joints
   VERNIER_API std::vector<std::string> formulas(std::span<const JointType> chain) const;
+  /// The joints whose gears err, one a joint of the chain: these formulas, or where motors err `J1` .. and the formulas
+  /// of passive joints.
+  VERNIER_API std::vector<std::string> erring_joints(std::span<const JointType> chain) const;
 
   /// A with further columns, N x N: of passive joints, by how much each differs from its law. These are 0 in every
   /// command. Empty where the joints are the same.
@@ -77,13 +86,24 @@ class ControllerMap {
   /// b [rad, m].
   const VectorX& zeros() const { return zeros_; }
 
-  /// Equal in every number.
+  /// This map of a controller whose motors err: errors of gears are functions of its joints, as in the drives of a
+  /// parallelogram. By default they are those of the chain's joints.
+  ControllerMap with_motor_errors(bool of_motors = true) const {
+    ControllerMap out = *this;
+    out.motor_errors_ = of_motors;
+    return out;
+  }
+  /// Whether errors of gears are functions of the controller's joints.
+  bool motor_errors() const { return motor_errors_; }
+
+  /// Equal in every number, and in where gears err.
   VERNIER_API bool operator==(const ControllerMap& other) const;
 
  private:
   VERNIER_API void complete(const MatrixX& coefficients);
 
   int joints_ = 0;
+  bool motor_errors_ = false;
   MatrixX square_{}, inverse_{};
   VectorX zeros_{};
 };

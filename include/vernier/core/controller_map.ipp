@@ -16,8 +16,6 @@ namespace vernier {
 
 namespace detail {
 
-inline constexpr int most_controller_joints = 64;
-
 /// Reads a formula, a sum of controller joints and constants.
 class FormulaReader {
  public:
@@ -292,8 +290,20 @@ VERNIER_IMPL std::vector<std::string> ControllerMap::formulas(std::span<const Jo
   return out;
 }
 
+VERNIER_IMPL std::vector<std::string> ControllerMap::erring_joints(std::span<const JointType> chain) const {
+  std::vector<std::string> of_chain = formulas(chain);
+  if (same() || !motor_errors_) return of_chain;
+  std::vector<std::string> out;
+  for (int j = 0; j < joints_; ++j) out.push_back(message('J', j + 1));
+  for (Index j = joints_; j < square_.cols(); ++j)
+    for (Index i = 0; i < square_.rows(); ++i)
+      if (!same_value(square_(i, j), 0)) out.push_back(of_chain[static_cast<std::size_t>(i)]);
+  return out;
+}
+
 VERNIER_IMPL bool ControllerMap::operator==(const ControllerMap& other) const {
-  if (joints_ != other.joints_ || square_.rows() != other.square_.rows()) return false;
+  if (joints_ != other.joints_ || square_.rows() != other.square_.rows() || motor_errors_ != other.motor_errors_)
+    return false;
   for (Index k = 0; k < square_.size(); ++k)
     if (!same_value(square_.data()[k], other.square_.data()[k])) return false;
   for (Index k = 0; k < zeros_.size(); ++k)

@@ -22,8 +22,9 @@ namespace vernier {
 
 namespace detail {
 
+/// @param payloads where wanted, become those of the rows
 VERNIER_API MatrixX read_joint_columns(const std::string& path, int joints, std::span<const JointType> types,
-                                       const CsvFormat& format);
+                                       const CsvFormat& format, MatrixX* payloads = nullptr);
 /// The columns of a file of poses.
 struct PoseColumns {
   MatrixX values;        ///< joints, then the positions [m], then the orientations [rad] if the file has them
@@ -119,6 +120,24 @@ template <int N>
 JointRows<N> read_joints(const std::string& path, std::span<const JointType> joint_types = {},
                          const CsvFormat& format = {}) {
   return detail::read_joint_columns(path, N, joint_types, format);
+}
+
+/// Configurations to visit, and what the arm carries there.
+template <int N>
+struct PlannedVisits {
+  JointRows<N> joints{};  ///< n x N [rad, m]
+  MatrixX payloads{};     ///< n x 4, as `Dataset::payloads` has them; no rows where that is not stated
+};
+
+/// Joint rows from a CSV file as `read_joints` has them, with the columns payload_kg, payload_x_mm, payload_y_mm and
+/// payload_z_mm of `read_dataset`.
+/// @throws DataError naming file, line and column
+template <int N>
+PlannedVisits<N> read_visits(const std::string& path, std::span<const JointType> joint_types = {},
+                             const CsvFormat& format = {}) {
+  PlannedVisits<N> out;
+  out.joints = detail::read_joint_columns(path, N, joint_types, format, &out.payloads);
+  return out;
 }
 
 /// Targets of a path, as a file states them.

@@ -99,11 +99,28 @@ VERNIER_LOCAL MatrixX approach_by_order(const CsvTable& table, const MatrixX& jo
   return out;
 }
 
+/// Payloads as `Dataset::payloads` has them; no rows without a column of masses.
+VERNIER_LOCAL MatrixX payloads_of(const CsvTable& table) {
+  const auto payload = values_of(table, "payload", quantities::payload);
+  if (!payload) return {};
+  const Index n = payload->size();
+  MatrixX out = MatrixX::Constant(n, 4, std::numeric_limits<double>::quiet_NaN());
+  for (Index i = 0; i < n; ++i) out(i, 0) = (*payload)(i);
+  Index axis = 0;
+  for (const char* stem : {"payload_x", "payload_y", "payload_z"}) {
+    ++axis;
+    if (const auto centre = values_of(table, stem, quantities::gauge_length))
+      for (Index i = 0; i < n; ++i) out(i, axis) = (*centre)(i);
+  }
+  return out;
+}
+
 VERNIER_IMPL MatrixX read_joint_columns(const std::string& path, int joints, std::span<const JointType> types,
-                                        const CsvFormat& format) {
+                                        const CsvFormat& format, MatrixX* payloads) {
   const CsvTable table(path, format);
   MatrixX out =
       with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller)), format.controller);
+  if (payloads != nullptr) *payloads = payloads_of(table);
   table.remark_unread();
   return out;
 }
@@ -214,16 +231,7 @@ VERNIER_IMPL PoseColumns read_pose_columns(const std::string& path, int joints, 
   const VectorX times = values_of(table, "time", quantities::time_of_measuring).value_or(VectorX());
   out.times = times.size() > 0 ? times : VectorX(VectorX::LinSpaced(n, 0, static_cast<double>(n - 1)));
   out.temperatures = values_of(table, "temperature", quantities::temperature).value_or(VectorX());
-  if (const auto payload = values_of(table, "payload", quantities::payload)) {
-    out.payloads = MatrixX::Constant(n, 4, std::numeric_limits<double>::quiet_NaN());
-    for (Index i = 0; i < n; ++i) out.payloads(i, 0) = (*payload)(i);
-    Index axis = 0;
-    for (const char* stem : {"payload_x", "payload_y", "payload_z"}) {
-      ++axis;
-      if (const auto centre = values_of(table, stem, quantities::gauge_length))
-        for (Index i = 0; i < n; ++i) out.payloads(i, axis) = (*centre)(i);
-    }
-  }
+  out.payloads = payloads_of(table);
   out.previous = has_joints(table, "from_")
                      ? with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller, "from_")),
                                          format.controller)

@@ -12,6 +12,7 @@
 
 #include "vernier/core/check.hpp"
 #include "vernier/core/checked_joints.hpp"
+#include "vernier/core/motor_angles.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
@@ -50,16 +51,22 @@ struct JointCoverage {
   std::array<bool, N> periodic{};                       ///< whether angles that differ by whole turns count as the same
   std::array<std::vector<JointRange>, N> measured{};  ///< from the least to the greatest measured value in each of the
                                                       ///< ranges, which are wider; empty where not known
+  MotorAngles motors{};  ///< whose angles the ranges are of, in place of those of the joints; none: of the joints
 
   /// The ranges of n measured joints. The margin is a tenth of a joint's total range, at least 0.02; values closer than
   /// two margins belong to one range; every range is widened by 3/n of the total (the extremes of n random values fall
   /// short by 1/n on average), at most half a margin, and ranges then closer than two margins are merged. `periodic` is
   /// left false; fits set it for revolute joints.
-  static JointCoverage covering(const JointRows<N>& joints) {
+  /// @param joints n x N [rad, m]
+  /// @param of     motors whose ranges are wanted in place of those of the joints
+  static JointCoverage covering(const JointRows<N>& joints, const MotorAngles& of = {}) {
     JointCoverage coverage;
+    coverage.motors = of;
     if (joints.rows() == 0) return coverage;
+    const MatrixX values = of.none() ? MatrixX() : of.angles(joints);
     for (int i = 0; i < N; ++i) {
-      detail::CoveredRanges found = detail::covered_ranges(joints.col(i));
+      detail::CoveredRanges found =
+          of.none() ? detail::covered_ranges(joints.col(i)) : detail::covered_ranges(values.col(i));
       coverage.ranges[static_cast<std::size_t>(i)] = std::move(found.widened);
       coverage.measured[static_cast<std::size_t>(i)] = std::move(found.measured);
       coverage.margin(i) = found.margin;
@@ -69,8 +76,8 @@ struct JointCoverage {
   /// The ranges of measured joints whose number is known at run time.
   /// @throws std::invalid_argument on another number of columns
   template <ColumnsAtRunTime Rows>
-  static JointCoverage covering(const Rows& joints) {
-    return covering(detail::joint_rows<N>(joints));
+  static JointCoverage covering(const Rows& joints, const MotorAngles& of = {}) {
+    return covering(detail::joint_rows<N>(joints), of);
   }
 
   /// This gate widened to the ranges of other measurements; `measured` stays.
@@ -97,8 +104,9 @@ struct JointCoverage {
 
   /// The gate at q; no allocation.
   double operator()(const JointVector<N>& q) const noexcept {
+    const JointVector<N> at = values(q);
     double product = 1;
-    for (int i = 0; i < N; ++i) product *= factor(i, q(i)).value;
+    for (int i = 0; i < N; ++i) product *= factor(i, at(i)).value;
     return product;
   }
   /// The gate at joint values whose number is known at run time.
@@ -110,14 +118,16 @@ struct JointCoverage {
 
   /// Its derivative with respect to q; no allocation.
   Eigen::Matrix<double, 1, N> derivative(const JointVector<N>& q) const noexcept {
+    const JointVector<N> at = values(q);
     std::array<detail::GateFactor, N> factors;
-    for (int i = 0; i < N; ++i) factors[static_cast<std::size_t>(i)] = factor(i, q(i));
+    for (int i = 0; i < N; ++i) factors[static_cast<std::size_t>(i)] = factor(i, at(i));
     Eigen::Matrix<double, 1, N> out;
     for (int j = 0; j < N; ++j) {
       out(j) = factors[static_cast<std::size_t>(j)].slope;
       for (int i = 0; i < N; ++i)
         if (i != j) out(j) *= factors[static_cast<std::size_t>(i)].value;
     }
+    if (!motors.none()) motors.to_chain_gradient(out.data());
     return out;
   }
   /// Its derivative with respect to joint values whose number is known at run time.
@@ -128,6 +138,11 @@ struct JointCoverage {
   }
 
  private:
+  JointVector<N> values(const JointVector<N>& q) const noexcept {
+    JointVector<N> out = q;
+    if (!motors.none()) motors.angles(q.data(), out.data());
+    return out;
+  }
   detail::GateFactor factor(int i, double q) const noexcept {
     return detail::gate_factor(ranges[static_cast<std::size_t>(i)], margin(i), periodic[static_cast<std::size_t>(i)],
                                q);

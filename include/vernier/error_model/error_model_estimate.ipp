@@ -83,7 +83,7 @@ VERNIER_IMPL JointFunction ErrorModelEstimate::transmission(int joint, const std
   VectorX all;
   for (Index k = 0; k < n; ++k) {
     const VectorX q = VectorX::Constant(terms.joints, angles[static_cast<std::size_t>(k)]);
-    arm.transmission_values(q.data(), all);
+    arm.function_values(q.data(), all);
     for (Index c = 0; c < count; ++c) rows(k, c) = all(first + c);
   }
   rows = detail::rows_minus(rows, detail::column_means(rows));

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "vernier/core/controller_map.hpp"
 #include "vernier/core/executor.hpp"
 #include "vernier/error_terms/joint_terms.hpp"
 #include "vernier/kinematics/joint_drive.hpp"
@@ -24,6 +25,7 @@ struct ErrorModelOptions {
   int harmonics = 500;     ///< highest order of the harmonics of each joint, at most 60 below 400 measurements; 0: none
   HarmonicSpectrum spectrum = typical_spectrum();  ///< orders of the Fourier terms, and their expected sizes
   std::vector<JointDrive> drives{};      ///< gears and encoders, one a joint: adds their orders up to `harmonics`
+  ControllerMap controller{};            ///< says whether gears err at motors, see `ControllerMap::motor_errors`
   bool find_lines = true;                ///< search for further orders up to 2,500, from 400 measurements on
   bool tool_per_station = false;         ///< every station has its own tool frame, not only its own base frame
   Vector3 down{0, 0, -1};                ///< direction of gravity in the arm's base frame

@@ -23,6 +23,7 @@ VERNIER_IMPL std::optional<std::vector<double>> ErrorModelOptions::parameters(Jo
     case Kind::hysteresis: return if_allowed(hysteresis, {0.01, 0.3});
     case Kind::tilt: return if_allowed(tilt, direction);
     case Kind::payload:
+    case Kind::bend:
     case Kind::straightness:
     case Kind::transmission: break;
   }
@@ -37,7 +38,8 @@ VERNIER_IMPL double ErrorModelOptions::expected_size(const JointTerms& terms, co
     case Kind::coupling: return coupling_prior_std;
     case Kind::gravity: return compliance_prior_std;
     case Kind::hysteresis: return hysteresis_prior_std;
-    case Kind::payload: return payload_prior_std;
+    case Kind::payload:
+    case Kind::bend: return payload_prior_std;
     case Kind::tilt: return tilt_prior_std;
     case Kind::straightness: {
       const auto order = static_cast<double>(coefficient % terms.straightness->orders() + 1);

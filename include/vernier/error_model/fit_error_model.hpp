@@ -68,9 +68,10 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
   detail::ErrorModelOutput found = detail::fit_error_model(input, options, sensors, search, executor);
 
   FittedErrorModel<Chain> out(std::move(found.estimate));
-  auto coverage = JointCoverage<N>::covering(found.joints);
+  const MotorAngles motors(options.controller);
+  auto coverage = JointCoverage<N>::covering(found.joints, motors);
   for (int i = 0; i < N; ++i)
-    coverage.periodic[static_cast<std::size_t>(i)] = nominal.row(i).joint == JointType::revolute;
+    coverage.periodic[static_cast<std::size_t>(i)] = nominal.row(motors.row_of(i)).joint == JointType::revolute;
   // what an earlier calibration measured is known, too
   const bool inherited = out.prior && out.prior->used;
   const JointCoverage<N> known = inherited ? coverage.joined(options.prior->ranges, options.prior->margins) : coverage;
@@ -82,7 +83,7 @@ FittedErrorModel<DhChain<N, Convention>> fit_error_model(const Identified<DhChai
     for (std::size_t s = 0; s < staged.arms.size(); ++s) {
       const FittedArm& arm = staged.arms[s];
       const JointTerms& terms = arm.errors.terms();
-      const bool gated = terms.size() > terms.num_dense_terms() || arm.errors.tilts();
+      const bool gated = terms.size() > terms.num_dense_terms() || terms.tilt || terms.straightness;
       ErrorModel<Chain> model =
           gated ? ErrorModel<Chain>(nominal, arm.typed(nominal),
                                     elastic->arms[s].with_hysteresis_of(arm).typed(nominal), last ? known : coverage)

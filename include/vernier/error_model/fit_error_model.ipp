@@ -33,6 +33,10 @@ class ErrorModelFit {
                options, spectra_of(options, input.nominal.joints()), input.nominal),
         problem_(model_.problem) {
     problem_.executor = executor;
+    static_cast<void>(options.controller.joints(input.nominal.joints()));
+    JointTerms none(input.nominal.joints());
+    none.motors = MotorAngles(options.controller);
+    problem_.arm.set_terms(std::move(none), VectorX(), VectorX());
   }
 
   VERNIER_LOCAL ErrorModelOutput run(PriorSearch search) {
@@ -42,7 +46,7 @@ class ErrorModelFit {
     out.stages.push_back({Stage::geometry, true, arms()});
     if (input_.sets.front().locates()) estimate.geometry_left_out_errors = model_.left_out_errors();
 
-    JointTerms elastic(input_.nominal.joints());
+    JointTerms elastic = problem_.arm.terms();
     add_to(elastic, JointTermBlock::Kind::gravity, options_.down);
     const std::optional<StatedPayloads> payloads = stated_payloads(problem_);
     if (options_.compliance && payloads && payloads->vary)
@@ -52,18 +56,24 @@ class ErrorModelFit {
     if (deflects && options_.estimate_down)
       estimate.down_std = estimate_down(model_, elastic, input_.nominal, options_.down);
     const Vector3 down = elastic.gravity ? elastic.gravity->down() : options_.down;
+    if (elastic.payload && problem_.arm.terms().payload) {
+      JointTerms bends = problem_.arm.terms();
+      bends.bend.emplace(input_.nominal, down, payloads->mean);
+      if (model_.add(Block::payload_bend, bends)) model_.solve();
+      elastic.bend = problem_.arm.terms().bend;
+    }
     out.stages.push_back({Stage::elastic, deflects, arms()});
 
     JointTerms all = elastic;
     for (int j = 0; j < all.joints; ++j)
-      if (input_.nominal.revolute(j))
+      if (input_.nominal.revolute(all.motors.row_of(j)))
         all.transmission[static_cast<std::size_t>(j)] =
             orders_of_joint(options_, model_.spectra, static_cast<std::size_t>(j), problem_.num_blocks());
     // linear in the joints, so beyond the measured ranges they stay as at their ends
     JointTerms linear = elastic;
     linear.gear_ratio = options_.gear_ratio;
     linear.coupling = options_.coupling;
-    const MatrixX joints = problem_.joints();
+    const MatrixX joints = all.motors.angles(problem_.joints());
     for (Index j = 0; j < joints.cols(); ++j)
       linear.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
     const bool periodic = all.size() > elastic.size(), geared = periodic && (linear.gear_ratio || linear.coupling);
@@ -170,7 +180,10 @@ class ErrorModelFit {
     assess(model_, estimate);
     if (model_.ordered() && input_.sets.front().locates()) estimate.block_error = model_.left_out_errors().mean();
     for (SessionDrift& of_station : estimate.drift)
-      if (!of_station.empty()) of_station.step_variance = problem_.drift_step_variance(estimate.residual_variance);
+      if (!of_station.empty()) {
+        of_station.step_variance = problem_.drift_step_variance(estimate.residual_variance);
+        to_chain(of_station);
+      }
     if (geometry_alone) estimate.geometry_left_out_errors = estimate.left_out_errors;
     if (inherited) {  // for the next to start from
       VectorX precisions = problem_.arm.precisions();
@@ -182,6 +195,23 @@ class ErrorModelFit {
   }
 
  private:
+  /// A drift of the motors' zeros as one of the zeros of the chain's joints.
+  VERNIER_LOCAL void to_chain(SessionDrift& drift) const {
+    const MotorAngles& motors = problem_.arm.terms().motors;
+    if (motors.none() || drift.knots.rows() <= 6) return;
+    const SessionDrift of_motors = drift;
+    const int n = problem_.arm.terms().joints;
+    for (int i = 0; i < n; ++i) {
+      drift.step_variance(6 + i) = 0;
+      for (int j = 0; j < n; ++j)
+        drift.step_variance(6 + i) += motors.moved(i, j) * motors.moved(i, j) * of_motors.step_variance(6 + j);
+      for (Index c = 0; c < drift.knots.cols(); ++c) {
+        drift.knots(6 + i, c) = 0;
+        for (int j = 0; j < n; ++j) drift.knots(6 + i, c) += motors.moved(i, j) * of_motors.knots(6 + j, c);
+      }
+    }
+  }
+
   /// Makes a block present if the options allow it.
   VERNIER_LOCAL bool add_to(JointTerms& terms, JointTermBlock::Kind kind, const Vector3& down) const {
     const auto parameters = options_.parameters(kind, down);
@@ -213,7 +243,6 @@ class ErrorModelFit {
   /// add to the covariance under other payloads. Products of compliance and weight tell how compliant a joint may be.
   VERNIER_LOCAL void leave_payload_open(const Payload& reference, const Vector3& down) {
     JointTerms terms = problem_.arm.terms();
-    if (terms.joints == 0) terms = JointTerms(input_.nominal.joints());
     terms.payload.emplace(input_.nominal, down, reference);
     model_.extend_terms(terms);
     constexpr double light = 100;  // weight of the links of a light arm [N]
@@ -278,6 +307,9 @@ class ErrorModelFit {
 
     const ErrorModelEstimate& before = prior.estimate;
     const JointTerms& terms = before.arm.terms();
+    const auto place = [](const JointTerms& of) { return of.motors.none() ? "joints of the chain" : "motors"; };
+    demand(terms.motors == problem_.arm.terms().motors, "fit_error_model: gears of the earlier calibration err at ",
+           place(terms), ", those of this robot at ", place(problem_.arm.terms()));
     problem_.arm = ArmParameterisation(input_.arms, with_unknowns_of(prior, geometric_unknowns(input_, options_)));
     problem_.arm.set_terms(terms, VERNIER_LATER(before.arm.scales()).tail(terms.size()), VectorX::Zero(terms.size()));
     problem_.reference_temperature = before.mean_temperature;

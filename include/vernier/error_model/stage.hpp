@@ -77,6 +77,7 @@ enum class Block {
   drift,          ///< of the bases
   joint_drift,    ///< of the joints' zeros, beside the bases
   straightness,   ///< departures of prismatic joints from a straight motion
+  payload_bend,   ///< bends across the joints' axes under a payload
 };
 
 /// What is known of a block.
@@ -87,7 +88,7 @@ struct BlockTraits {
 };
 
 /// All blocks, by their number.
-inline constexpr std::array<BlockTraits, 13> block_rows{{
+inline constexpr std::array<BlockTraits, 14> block_rows{{
     {Block::elastic, "elastic", "gravity compliance"},
     {Block::jointwise, "jointwise", "functions of single joints"},
     {Block::gears, "gears", "gear ratios and coupling"},
@@ -101,6 +102,7 @@ inline constexpr std::array<BlockTraits, 13> block_rows{{
     {Block::drift, "drift", "drift of the base"},
     {Block::joint_drift, "joint_drift", "drift of the joints' zeros"},
     {Block::straightness, "straightness", "straightness of prismatic joints"},
+    {Block::payload_bend, "payload_bend", "bends across the joints' axes under a payload"},
 }};
 
 /// What is known of a block.

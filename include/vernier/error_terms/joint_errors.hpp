@@ -78,11 +78,12 @@ class JointErrors {
   /// @param loads    what the arm carries at each; none: `load()`
   VERNIER_API MatrixX effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous = MatrixX(),
                                      std::span<const PayloadLoad> loads = {}) const;
-  /// Half the width of joint i's (from 0) hysteresis loop [rad, m], that of motions much longer than its widths.
+  /// Half the width of the hysteresis loop of joint i (from 0), or motor i [rad, m]: that of motions much longer than
+  /// its widths.
   VERNIER_API double half_loop(int i) const noexcept;
 
-  /// Whether the arm's end moves beyond its joints: frames of joints tilt, or a guide is not straight.
-  bool tilts() const { return terms_.tilt || terms_.straightness; }
+  /// Whether the arm's end moves beyond its joints: frames of joints tilt or bend, or a guide is not straight.
+  bool tilts() const { return terms_.tilt || terms_.bend || terms_.straightness; }
   /// Moves a pose of the arm's end by these motions, and extends its derivative by theirs. Does not
   /// allocate.
   /// @param q        commanded joint values
@@ -90,7 +91,7 @@ class JointErrors {
   /// @param jacobian of that pose with respect to commanded joint values, 6 x joints by columns; null for none
   VERNIER_API void tilt(const double* q, Isometry3& pose, double* jacobian = nullptr) const noexcept;
 
-  /// What the transmission of joint i (from 0) adds at an angle [rad].
+  /// What the transmission of joint i (from 0), or motor i, adds at an angle [rad].
   VERNIER_API double transmission(int i, double q) const noexcept;
 
  private:

@@ -32,11 +32,16 @@ VERNIER_IMPL JointErrors::JointErrors(JointTerms terms, VectorX coefficients)
          terms_.gravity ? terms_.gravity->joints() : 0, " joints, expected ", terms_.joints);
   demand(!terms_.payload || terms_.payload->joints() == terms_.joints, "JointErrors: compliance to payload of ",
          terms_.payload ? terms_.payload->joints() : 0, " joints, expected ", terms_.joints);
+  demand(!terms_.bend || (terms_.payload && terms_.bend->joints() == terms_.joints), "JointErrors: bends of ",
+         terms_.bend ? terms_.bend->joints() : 0, " joints, expected ", terms_.joints,
+         " beside compliances to payload");
   demand(!terms_.tilt || terms_.tilt->joints() == terms_.joints, "JointErrors: tilts of ",
          terms_.tilt ? terms_.tilt->joints() : 0, " joints, expected ", terms_.joints);
   demand(!terms_.straightness || terms_.straightness->joints() == terms_.joints, "JointErrors: straightness of ",
          terms_.straightness ? terms_.straightness->joints() : 0, " joints, expected ", terms_.joints);
   for (const Fourier& fourier : terms_.transmission) fourier.validate();
+  demand(terms_.motors.none() || terms_.motors.controller().chain_joints() == terms_.joints, "JointErrors: motors of ",
+         terms_.motors.controller().chain_joints(), " joints, expected ", terms_.joints);
   demand(terms_.linear_ranges.empty() || terms_.linear_ranges.size() == static_cast<std::size_t>(terms_.joints),
          "JointErrors: linear ranges of ", terms_.linear_ranges.size(), " joints, expected ", terms_.joints);
   for (const JointRange& range : terms_.linear_ranges)
@@ -62,7 +67,16 @@ VERNIER_IMPL void JointErrors::evaluate(const double* q, int n, double* effectiv
   for (int i = 0; i < n; ++i) derivative[i * n + i] = 1;
   if (empty()) return;
   terms_.add_dense(q, previous, load != nullptr ? *load : load_, coefficients_.data(), effective, derivative);
-  harmonics_.add(q, n, effective, derivative);
+  if (terms_.motors.none()) {
+    harmonics_.add(q, n, effective, derivative);
+    return;
+  }
+  double angles[max_joints], errors[max_joints], rates[max_joints * max_joints];
+  std::fill_n(errors, n, 0.0);
+  std::fill_n(rates, n * n, 0.0);
+  terms_.motors.angles(q, angles);
+  harmonics_.add(angles, n, errors, rates);
+  terms_.motors.add(errors, rates, effective, derivative);
 }
 
 VERNIER_IMPL MatrixX JointErrors::effective_rows(const ConstMatrixRef& joints, const ConstMatrixRef& previous,
@@ -97,7 +111,7 @@ VERNIER_IMPL void JointErrors::tilt(const double* q, Isometry3& pose, double* ja
   const int n = terms_.joints;
   double rates[6 * max_joints];
   const Vector6 motion =
-      terms_.end_motion(q, coefficients_.data() + terms_.end_begin(), jacobian != nullptr ? rates : nullptr);
+      terms_.end_motion(q, load_, coefficients_.data() + terms_.end_begin(), jacobian != nullptr ? rates : nullptr);
   const Vector3 shift = VERNIER_LATER(motion).template head<3>(), turn = VERNIER_LATER(motion).template tail<3>();
   const Matrix3 rotation = exp_so3(turn);
   const Vector3 turned = rotation * translation(pose);

@@ -54,10 +54,23 @@ VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previou
                                           const PayloadLoad& load) const noexcept {
   out.setZero();
   Index at = 0;
+  double angles[max_joints], from[max_joints];
+  const double *u = q, *before = previous;
+  if (!motors.none()) {
+    motors.angles(q, angles);
+    u = angles;
+    if (previous != nullptr) motors.angles(previous, from);
+    before = previous != nullptr ? from : nullptr;
+  }
+  // the joints move by an error of motor i
+  const auto set = [&](int i, double error) {
+    for (int r = 0; r < joints; ++r) out(r, at) = motors.none() ? (r == i ? error : 0) : error * motors.moved(r, i);
+    ++at;
+  };
   if (gear_ratio)
-    for (int i = 0; i < joints; ++i) out(i, at++) = linear_value(i, q[i]);
+    for (int i = 0; i < joints; ++i) set(i, linear_value(i, u[i]));
   if (coupling)
-    for (int i = 1; i < joints; ++i) out(i, at++) = linear_value(i - 1, q[i - 1]);
+    for (int i = 1; i < joints; ++i) set(i, linear_value(i - 1, u[i - 1]));
   if (gravity) {
     gravity->basis(q, VERNIER_LATER(out).middleCols(at, gravity->size()));
     at += gravity->size();
@@ -68,11 +81,32 @@ VERNIER_IMPL void JointTerms::dense_basis(const double* q, const double* previou
     for (int i = 0; i < joints; ++i) out(i, at++) = torques[i];
   }
   for (const double width : hysteresis)
-    for (int i = 0; i < joints; ++i) out(i, at++) = detail::step_of(q, previous, i, width);
+    for (int i = 0; i < joints; ++i) set(i, detail::step_of(u, before, i, width));
 }
 
 VERNIER_IMPL void JointTerms::add_dense(const double* q, const double* previous, const PayloadLoad& load,
                                         const double* beta, double* effective, double* derivative) const noexcept {
+  if (motors.none()) {
+    add_of_motors(q, previous, beta, effective, derivative);
+  } else {
+    double angles[max_joints], before[max_joints], errors[max_joints], rates[max_joints * max_joints];
+    std::fill_n(errors, joints, 0.0);
+    std::fill_n(rates, joints * joints, 0.0);
+    motors.angles(q, angles);
+    if (previous != nullptr) motors.angles(previous, before);
+    add_of_motors(angles, previous != nullptr ? before : nullptr, beta, errors, rates);
+    motors.add(errors, rates, effective, derivative);
+  }
+  beta += (gear_ratio ? joints : 0) + (coupling ? joints - 1 : 0);
+  if (gravity) {
+    gravity->add(q, beta, effective, derivative);
+    beta += gravity->size();
+  }
+  if (payload) payload->add(q, load, beta, effective, derivative);
+}
+
+VERNIER_IMPL void JointTerms::add_of_motors(const double* q, const double* previous, const double* beta,
+                                            double* effective, double* derivative) const noexcept {
   const int n = joints;
   if (gear_ratio) {
     for (int i = 0; i < n; ++i) {
@@ -90,14 +124,7 @@ VERNIER_IMPL void JointTerms::add_dense(const double* q, const double* previous,
     }
     beta += n - 1;
   }
-  if (gravity) {
-    gravity->add(q, beta, effective, derivative);
-    beta += gravity->size();
-  }
-  if (payload) {
-    payload->add(q, load, beta, effective, derivative);
-    beta += n;
-  }
+  beta += (gravity ? gravity->size() : 0) + (payload ? n : 0);
   for (const double width : hysteresis) {
     for (int i = 0; i < n; ++i) {
       const double step = detail::step_of(q, previous, i, width);
@@ -126,6 +153,11 @@ VERNIER_IMPL void JointTerms::add(JointTermBlock::Kind kind, const detail::Chain
       payload.emplace(nominal, detail::direction_of(parameters.first(3)),
                       Payload{parameters[3], Vector3(parameters[4], parameters[5], parameters[6])});
       break;
+    case Kind::bend:
+      demand(parameters.size() == 7 && parameters[3] >= 0, "a reference payload has a mass, which is not negative");
+      bend.emplace(nominal, detail::direction_of(parameters.first(3)),
+                   Payload{parameters[3], Vector3(parameters[4], parameters[5], parameters[6])});
+      break;
     case Kind::straightness: {
       std::vector<JointRange> ranges(static_cast<std::size_t>(joints));
       std::size_t at = 1;
@@ -151,12 +183,14 @@ VERNIER_IMPL std::vector<double> JointTerms::parameters(JointTermBlock::Kind kin
   if (kind == Kind::gravity && gravity) return values(gravity->down());
   if (kind == Kind::hysteresis) return hysteresis;
   if (kind == Kind::tilt && tilt) return values(tilt->down());
-  if (kind == Kind::payload && payload) {
-    std::vector<double> out = values(payload->down());
-    out.push_back(payload->reference().mass);
-    out.insert(out.end(), payload->reference().centre.begin(), payload->reference().centre.end());
+  const auto loaded = [&](const auto& of) {
+    std::vector<double> out = values(of.down());
+    out.push_back(of.reference().mass);
+    out.insert(out.end(), of.reference().centre.begin(), of.reference().centre.end());
     return out;
-  }
+  };
+  if (kind == Kind::payload && payload) return loaded(*payload);
+  if (kind == Kind::bend && bend) return loaded(*bend);
   if (kind == Kind::straightness && straightness) {
     std::vector<double> out{static_cast<double>(straightness->orders())};
     for (const int guide : straightness->guides()) {
@@ -168,18 +202,27 @@ VERNIER_IMPL std::vector<double> JointTerms::parameters(JointTermBlock::Kind kin
   return {};
 }
 
-VERNIER_IMPL void JointTerms::end_basis(const double* q, MatrixRef out) const noexcept {
+VERNIER_IMPL void JointTerms::end_basis(const double* q, const PayloadLoad& load, MatrixRef out) const noexcept {
   if (tilt) tilt->basis(q, VERNIER_LATER(out).leftCols(tilt->size()));
+  if (bend) bend->basis(q, load, VERNIER_LATER(out).middleCols(tilt ? tilt->size() : 0, bend->size()));
   if (straightness) straightness->basis(q, VERNIER_LATER(out).rightCols(straightness->size()));
 }
 
-VERNIER_IMPL Vector6 JointTerms::end_motion(const double* q, const double* coefficients, double* rates) const noexcept {
-  if (!straightness) return tilt->motion(q, coefficients, rates);
-  Vector6 out = straightness->motion(q, coefficients + (tilt ? tilt->size() : 0), rates);
-  if (!tilt) return out;
-  double of_tilts[6 * max_joints];
-  out += tilt->motion(q, coefficients, rates != nullptr ? of_tilts : nullptr);
-  for (int k = 0; rates != nullptr && k < 6 * joints; ++k) rates[k] += of_tilts[k];
+VERNIER_IMPL Vector6 JointTerms::end_motion(const double* q, const PayloadLoad& load, const double* coefficients,
+                                            double* rates) const noexcept {
+  Vector6 out = Vector6::Zero();
+  double some[6 * max_joints];  // of one kind
+  double* slopes = rates != nullptr ? some : nullptr;
+  if (rates != nullptr) std::fill_n(rates, 6 * joints, 0.0);
+  const auto add = [&](const Vector6& motion) {
+    out += motion;
+    for (int k = 0; rates != nullptr && k < 6 * joints; ++k) rates[k] += some[k];
+  };
+  if (tilt) add(tilt->motion(q, coefficients, slopes));
+  if (tilt) coefficients += tilt->size();
+  if (bend) add(bend->motion(q, load, coefficients, slopes));
+  if (bend) coefficients += bend->size();
+  if (straightness) add(straightness->motion(q, coefficients, slopes));
   return out;
 }
 
@@ -196,6 +239,7 @@ VERNIER_IMPL std::vector<JointTermBlock> JointTerms::blocks() const {
   add(Kind::payload, -1, payload ? joints : 0);
   add(Kind::hysteresis, -1, joints * static_cast<Index>(hysteresis.size()));
   add(Kind::tilt, -1, tilt ? tilt->size() : 0);
+  add(Kind::bend, -1, bend ? bend->size() : 0);
   add(Kind::straightness, -1, straightness ? straightness->size() : 0);
   for (int i = 0; i < joints; ++i) add(Kind::transmission, i, transmission[static_cast<std::size_t>(i)].size());
   return out;
@@ -215,6 +259,8 @@ VERNIER_IMPL std::vector<std::string> JointTerms::names() const {
     for (int i = 1; i <= joints; ++i) out.push_back(message("hysteresis", i, '_', w));
   for (int i = 1; tilt && i <= joints; ++i)
     for (const char* which : {"xx", "xy", "xz", "yx", "yy", "yz"}) out.push_back(message("tilt", i, '_', which));
+  for (int i = 1; bend && i <= joints; ++i)
+    for (const char* about : {"x", "y"}) out.push_back(message("bend", i, '_', about));
   if (straightness)
     for (const int p : straightness->guides())
       for (const char* component : {"x", "y", "z", "rx", "ry", "rz"})

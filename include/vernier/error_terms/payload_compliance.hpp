@@ -33,6 +33,14 @@ struct PayloadLoad {
   Vector3 moment = Vector3::Zero();  ///< weight times centre, in the frame of the flange [N m]
 };
 
+namespace detail {
+
+/// The moment of a load at the end of a chain about the origin of its base frame [N m], before gravity turns it into a
+/// torque: weight times lever.
+VERNIER_API Vector3 moment_about_base(const ChainTable& chain, const double* q, const PayloadLoad& load) noexcept;
+
+}  // namespace detail
+
 /// Deflection of joints by a payload: a spring of compliance c_i at joint i [rad/(N m), m/N] deflects by
 /// `c_i torque_i`. Torques are those beyond a reference payload, whose deflection the products of `GravityCompliance`
 /// contain. So measurements under one payload leave the compliances at their priors.
@@ -48,6 +56,8 @@ class PayloadCompliance {
   const Vector3& down() const { return down_; }
   /// The payload without effect.
   const Payload& reference() const { return reference_; }
+  /// The nominal chain.
+  const detail::ChainTable& chain() const { return chain_; }
   /// Number of joints, each with a compliance.
   int joints() const { return chain_.joints(); }
   /// What a payload is beyond the reference; nothing for one that is not finite.

@@ -60,6 +60,11 @@ VERNIER_LOCAL LoadedLinks loaded_links(const ChainTable& chain, const double* q,
 
 }  // namespace detail
 
+VERNIER_IMPL Vector3 detail::moment_about_base(const ChainTable& chain, const double* q,
+                                               const PayloadLoad& load) noexcept {
+  return loaded_links(chain, q, load).moment;
+}
+
 VERNIER_IMPL Payload Payload::of(const ConstMatrixRef& payloads, Index row) {
   return {payloads(row, 0), {payloads(row, 1), payloads(row, 2), payloads(row, 3)}};
 }

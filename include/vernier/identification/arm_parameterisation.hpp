@@ -91,7 +91,7 @@ class ArmParameterisation {
   VERNIER_API std::vector<Isometry3> poses(int station, const ConstMatrixRef& joints,
                                            const ConstMatrixRef& previous = MatrixX()) const;
   /// Modelled poses, and the columns of unit steps of all unknowns, not whitened: writes `dense`, `factor` (of a unit
-  /// error of each joint) and `functions` of n blocks.
+  /// error of each joint, or motor) and `functions` of n blocks.
   /// @param station       from 0
   /// @param joints        n x joints [rad, m]
   /// @param previous      joint values from which they were approached, likewise; no rows where unknown
@@ -105,6 +105,8 @@ class ArmParameterisation {
                                                const ConstMatrixRef& payloads = MatrixX()) const;
   /// Values of the transmissions' functions at q, in units of scales.
   VERNIER_API void transmission_values(const double* q, VectorX& out) const;
+  /// Those at angles of the motors, where those err; see `JointTerms`.
+  VERNIER_API void function_values(const double* motors, VectorX& out) const;
 
  private:
   template <class F>

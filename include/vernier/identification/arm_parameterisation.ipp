@@ -130,10 +130,10 @@ namespace detail {
 /// @param of_base whether each of the first columns turns the arm about its base, and not about a point of the arm
 VERNIER_LOCAL void tilt_columns(const JointErrors& errors, const VectorX& q, const Isometry3& base,
                                 const std::vector<bool>& of_base, Index first, const ConstVectorRef& scales,
-                                Isometry3& pose, RowBlock& rows) {
+                                const PayloadLoad& load, Isometry3& pose, RowBlock& rows) {
   const JointTerms& terms = errors.terms();
   const Index begin = terms.end_begin();
-  const Vector6 at = terms.end_motion(q.data(), errors.coefficients().data() + begin);
+  const Vector6 at = terms.end_motion(q.data(), load, errors.coefficients().data() + begin);
   const Vector3 shift = VERNIER_LATER(at).template head<3>(), turn = VERNIER_LATER(at).template tail<3>(),
                 before = translation(pose);
   const Matrix3 to_base = rotation(base), tilted = exp_so3(turn);
@@ -157,7 +157,7 @@ VERNIER_LOCAL void tilt_columns(const JointErrors& errors, const VectorX& q, con
       std::copy_n(angular.data(), 3, column + 3);
     }
   MatrixX basis(6, terms.num_end_terms());
-  terms.end_basis(q.data(), basis);
+  terms.end_basis(q.data(), load, basis);
   for (Index k = 0; k < basis.cols(); ++k) {
     const Vector3 translates = to_base * Vector3(basis(0, k), basis(1, k), basis(2, k));
     const Vector3 omega = rate * Vector3(basis(3, k), basis(4, k), basis(5, k));
@@ -236,15 +236,27 @@ VERNIER_IMPL std::vector<Isometry3> ArmParameterisation::linearise(int station, 
         for (Index r = 0; r < 6; ++r) rows.dense(r, of_geometry + k) = coefficient_scales_(k) * sum(r);
       }
     }
+    if (!terms().motors.none()) terms().motors.to_motors(rows.factor.data(), 6);
     transmission_values(q.data(), rows.functions);
     if (errors_.tilts())
       detail::tilt_columns(errors_, q, arm.base().isometry(), of_base, of_geometry + terms().end_begin(),
-                           coefficient_scales_, at.poses[static_cast<std::size_t>(i)], rows);
+                           coefficient_scales_, loads.empty() ? PayloadLoad{} : loads[static_cast<std::size_t>(i)],
+                           at.poses[static_cast<std::size_t>(i)], rows);
   }
   return std::move(at.poses);
 }
 
 VERNIER_IMPL void ArmParameterisation::transmission_values(const double* q, VectorX& out) const {
+  if (terms().motors.none()) {
+    function_values(q, out);
+    return;
+  }
+  double angles[max_joints];
+  terms().motors.angles(q, angles);
+  function_values(angles, out);
+}
+
+VERNIER_IMPL void ArmParameterisation::function_values(const double* q, VectorX& out) const {
   out.resize(terms().size() - terms().num_dense_terms());
   if (out.size() == 0) return;
   Index at = 0;

@@ -7,6 +7,7 @@ namespace vernier {
 
 VERNIER_IMPL FittedArm FittedArm::with_hysteresis_of(const FittedArm& other) const {
   JointTerms terms = errors.empty() ? JointTerms(geometry.joints()) : errors.terms();
+  terms.motors = other.errors.terms().motors;
   terms.hysteresis = other.errors.terms().hysteresis;
   VectorX coefficients = VectorX::Zero(terms.size());
   for (const JointTermBlock& now : terms.blocks()) {

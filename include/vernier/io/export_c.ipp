@@ -50,12 +50,13 @@ VERNIER_LOCAL std::set<std::string> c_features(const ModelData& model) {
   const int joints = model.nominal.joints(), equations = joints >= 6 ? 6 : 3;  // as CorrectionTarget::automatic
   add("ORIENTED", equations == 6);
   add("CONTROLLER", !model.controller.same());
+  add("MOTORS", !model.identified.errors.empty() && !model.identified.errors.terms().motors.none());
   add("REDUNDANT", equations < model.controller.joints(joints));
   add("FALLBACK", model.fallback.has_value());
   add("LEARNED", model.learned.has_value());
   add("GATES", model.fallback || model.learned);
   add("LINEAR", out.contains("GEAR_RATIO") || out.contains("COUPLING"));
-  add("MOTION", out.contains("TILT") || out.contains("STRAIGHTNESS"));
+  add("MOTION", out.contains("TILT") || out.contains("PAYLOAD_BEND") || out.contains("STRAIGHTNESS"));
   add("LOG", out.contains("ORIENTED") || out.contains("FALLBACK"));
   add("TORQUES", out.contains("GRAVITY") || out.contains("PAYLOAD"));
   add("EXP", out.contains("MOTION") || out.contains("FALLBACK"));
@@ -173,6 +174,19 @@ VERNIER_IMPL std::string c_source(const ModelData& model, const CExport& options
     const VectorX& zeros = model.controller.zeros();
     out += c_table(prefix + "factors_", factors, static_cast<std::size_t>(moving));
     out += c_table(prefix + "zeros_", std::vector<double>(zeros.data(), zeros.data() + zeros.size()), 3);
+  }
+  if (features.contains("MOTORS")) {
+    const MotorAngles& motors = model.identified.errors.terms().motors;
+    const VectorX& zeros = motors.zeros();
+    std::vector<double> effects, angles;
+    for (int i = 0; i < joints; ++i)
+      for (int j = 0; j < joints; ++j) {
+        effects.push_back(motors.moved(i, j));
+        angles.push_back(motors.depends(i, j));
+      }
+    out += c_table(prefix + "motor_effects_", effects, static_cast<std::size_t>(joints));
+    out += c_table(prefix + "motor_angles_", angles, static_cast<std::size_t>(joints));
+    out += c_table(prefix + "motor_zeros_", std::vector<double>(zeros.data(), zeros.data() + zeros.size()), 3);
   }
   if (features.contains("PRISMATIC")) out += c_table(prefix + "prismatic_", prismatic);
   out += c_chain_table(prefix + "nominal_rows_", model.nominal);

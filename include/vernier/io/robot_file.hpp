@@ -43,7 +43,7 @@ struct RobotDescription {
   /// Lower and upper, one a joint of the controller [rad, m]; infinite where not given.
   std::vector<std::pair<double, double>> limits{};
 
-  std::vector<JointDrive> drives{};           ///< gears and encoders, one a joint
+  std::vector<JointDrive> drives{};           ///< gears and encoders, one a joint; of motors where those err
   Isometry3 base = Isometry3::Identity();     ///< frame in which the first row stands
   Isometry3 tool = Isometry3::Identity();     ///< tool frame after the last row
   std::vector<std::string> joint_names = {};  ///< one a joint; may be empty
@@ -114,6 +114,8 @@ struct RobotDescription {
 ///
 ///     "controller": {"chain": ["J1", "J2", "-J2 - J3", "-J4", "-J5", "-J6"],
 ///                    "limits": [{"lower_deg": -180, "upper_deg": 180}, ...]}
+///
+/// `"errors": "motors"` there says that gears err as functions of the controller's joints, whose `drives` it may list.
 ///
 /// `base` and `tool` are the frames before the first row and behind the last one: position, and rotation vector or
 /// quaternion, both of which may be omitted. They are starting values unless `known` is true. `down` is the direction

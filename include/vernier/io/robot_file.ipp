@@ -25,6 +25,19 @@ VERNIER_LOCAL std::pair<double, double> read_limits(const JsonNode& joint, bool 
   return out;
 }
 
+/// Gear and encoder of a joint.
+VERNIER_LOCAL JointDrive read_drive(const JsonNode& joint, bool revolute) {
+  JointDrive drive;
+  if (joint.has("gear_ratio")) {
+    drive.gear_ratio = joint.at("gear_ratio").number();
+    if (!(drive.gear_ratio >= 1)) joint.at("gear_ratio").fail("must be at least 1");
+  }
+  if (joint.has("encoder_periods"))
+    drive.encoder_periods = static_cast<int>(joint.at("encoder_periods").integer(1, 100000));
+  if (!revolute && drive != JointDrive{}) joint.fail("gear_ratio and encoder_periods are those of a revolute joint");
+  return drive;
+}
+
 /// One joint of a robot file.
 VERNIER_LOCAL void read_joint(const JsonNode& joint, RobotDescription& robot) {
   joint.allow_only({"type",      "a_mm",      "a_m",       "alpha_deg", "alpha_rad", "d_mm",       "d_m",
@@ -47,22 +60,39 @@ VERNIER_LOCAL void read_joint(const JsonNode& joint, RobotDescription& robot) {
     if (std::abs(angle) > largest_angle) joint.fail(message("an angle of ", angle, " rad; is the unit right?"));
   const bool revolute = row.joint == JointType::revolute;
   const std::pair<double, double> bounds = read_limits(joint, revolute);
-  JointDrive drive;
-  if (joint.has("gear_ratio")) {
-    drive.gear_ratio = joint.at("gear_ratio").number();
-    if (!(drive.gear_ratio >= 1)) joint.at("gear_ratio").fail("must be at least 1");
-  }
-  if (joint.has("encoder_periods"))
-    drive.encoder_periods = static_cast<int>(joint.at("encoder_periods").integer(1, 100000));
-  if (!revolute && drive != JointDrive{}) joint.fail("gear_ratio and encoder_periods are those of a revolute joint");
-  robot.drives.push_back(drive);
+  robot.drives.push_back(read_drive(joint, revolute));
   robot.rows.push_back(row);
   robot.limits.push_back(bounds);
 }
 
-/// The key `controller`: formulas of the chain's joints, and limits.
+/// The keys `errors` and `drives` of a controller: where gears err, and gears and encoders of its joints.
+VERNIER_LOCAL void read_motors(const JsonNode& controller, const std::vector<JointType>& types,
+                               RobotDescription& robot) {
+  const std::string errors = controller.has("errors") ? controller.at("errors").text() : "chain";
+  if (errors != "chain" && errors != "motors")
+    controller.at("errors").fail("'" + quotable(errors) + "' is neither chain nor motors");
+  const bool of_motors = errors == "motors";
+  robot.controller = robot.controller.with_motor_errors(of_motors);
+  if (!of_motors) {
+    if (controller.has("drives"))
+      controller.at("drives").fail("needs errors: motors; else drives are those of the rows");
+    return;
+  }
+  for (const JointDrive& drive : robot.drives)
+    if (drive != JointDrive{})
+      controller.at("errors").fail("a row has gear_ratio or encoder_periods; those of motors are in controller.drives");
+  if (!controller.has("drives")) return;
+  const JsonNode drives = controller.at("drives");
+  drives.require_size(types.size());
+  for (std::size_t j = 0; j < types.size(); ++j) {
+    drives.at(j).allow_only({"gear_ratio", "encoder_periods"});
+    robot.drives[j] = read_drive(drives.at(j), types[j] == JointType::revolute);
+  }
+}
+
+/// The key `controller`: formulas of the chain's joints, limits, and where gears err.
 VERNIER_LOCAL void read_controller(const JsonNode& controller, const JsonNode& joints, RobotDescription& robot) {
-  controller.allow_only({"chain", "limits"});
+  controller.allow_only({"chain", "limits", "errors", "drives"});
   for (std::size_t i = 0; i < joints.size(); ++i)
     if (joints.at(i).has_quantity("lower") || joints.at(i).has_quantity("upper"))
       joints.at(i).fail("limits are those of the controller's joints, in controller.limits");
@@ -77,6 +107,7 @@ VERNIER_LOCAL void read_controller(const JsonNode& controller, const JsonNode& j
     chain.fail(error.what());
   }
   const std::vector<JointType> types = robot.controller.types(chain_types);
+  read_motors(controller, types, robot);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   robot.limits.assign(types.size(), {-infinity, infinity});
   if (!controller.has("limits")) return;

@@ -26,6 +26,7 @@ struct SingularityDistances {
   /// Whether those three are known. Of an arm without closed form they are not: then `wrist` is the determinant of the
   /// Jacobian over the product of its columns' lengths, and the others are 1.
   bool factored = true;
+  bool known = true;  ///< whether anything is known: else all of these are meaningless
 
   /// All three, in that order.
   std::array<double, 3> values() const { return {shoulder, elbow, wrist}; }
@@ -35,8 +36,10 @@ struct SingularityDistances {
   double nearest_angle() const {
     return std::asin((std::min)({std::abs(shoulder), std::abs(elbow), std::abs(wrist), 1.0}));
   }
-  /// The singularity to which that belongs: `shoulder`, `elbow` or `wrist`; `any` where they are not told apart.
+  /// The singularity to which that belongs: `shoulder`, `elbow` or `wrist`; `any` where they are not told apart, empty
+  /// where nothing is known.
   std::string_view nearest() const {
+    if (!known) return "";
     if (!factored) return "any";
     const double least = (std::min)({std::abs(shoulder), std::abs(elbow), std::abs(wrist)});
     return std::abs(wrist) <= least ? "wrist" : std::abs(elbow) <= least ? "elbow" : "shoulder";

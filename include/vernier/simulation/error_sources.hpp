@@ -27,8 +27,10 @@ struct JointErrorSizes {
   int harmonics = 3;         ///< number of harmonics; harmonic k has the size `harmonic / k^decay`
   double decay = 1;          ///< how fast higher harmonics die out
   double ripple = 0;         ///< of one more harmonic, that of the meshing teeth [rad]
-  int ripple_harmonic = 100;  ///< periods a turn of the joint; above `harmonics`
-  Vector3 down{0, 0, -1};     ///< direction of gravity in the base frame of the chain; a unit vector
+  int ripple_harmonic = 100;   ///< periods a turn of the joint; above `harmonics`
+  double payload = 0;          ///< compliance of each joint to payload, made positive [rad/(N m), m/N]
+  Vector3 down{0, 0, -1};      ///< direction of gravity in the base frame of the chain; a unit vector
+  ControllerMap controller{};  ///< whose motors err, if it says so (`ControllerMap::motor_errors`)
 };
 
 namespace detail {

@@ -18,6 +18,7 @@ VERNIER_IMPL JointErrors draw_joint_errors(const ChainTable& chain, const JointE
                                                              {sizes.compliance, "compliance"},
                                                              {sizes.harmonic, "harmonic"},
                                                              {sizes.decay, "decay"},
+                                                             {sizes.payload, "payload"},
                                                              {sizes.ripple, "ripple"}})
     demand(value >= 0 && std::isfinite(value), "JointErrorSizes: ", name, " is ", value,
            ", must be 0 or more and finite");
@@ -28,14 +29,16 @@ VERNIER_IMPL JointErrors draw_joint_errors(const ChainTable& chain, const JointE
          ") and in 1..500");
 
   JointTerms terms(n);
+  terms.motors = MotorAngles(sizes.controller);
   terms.gear_ratio = sizes.gear_ratio > 0;
   terms.coupling = sizes.coupling > 0;
   if (sizes.compliance > 0) terms.gravity.emplace(chain, sizes.down);
+  if (sizes.payload > 0) terms.payload.emplace(chain, sizes.down, Payload{0, Vector3::Zero()});
   const int low = sizes.harmonic > 0 ? sizes.harmonics : 0;
   Fourier harmonics = Fourier::up_to(low);
   if (sizes.ripple > 0) harmonics.orders.push_back(sizes.ripple_harmonic);
   for (int i = 0; i < n; ++i)
-    if (chain.revolute(i)) terms.transmission[static_cast<std::size_t>(i)] = harmonics;
+    if (chain.revolute(terms.motors.row_of(i))) terms.transmission[static_cast<std::size_t>(i)] = harmonics;
 
   VectorX coefficients = VectorX::Zero(terms.size());
   Index at = 0;
@@ -50,6 +53,10 @@ VERNIER_IMPL JointErrors draw_joint_errors(const ChainTable& chain, const JointE
     const Index begin = at;
     draw(compliance, terms.gravity->size(), sizes.compliance);
     for (Index k = begin; k < at; ++k) coefficients(k) = std::abs(coefficients(k));
+  }
+  if (terms.payload) {
+    Rng springs(child_seed(seed, 1'000'000));  // behind those of any joint
+    for (const Index end = at + n; at < end; ++at) coefficients(at) = sizes.payload * std::abs(springs.normal());
   }
   for (int i = 0; i < n; ++i) {
     Rng low_stream(child_seed(seed, stream++)), ripple_stream(child_seed(seed, stream++));

@@ -5,6 +5,10 @@ extern const arm_arm_ arm_identified_;
 #if HAS_CONTROLLER
 extern const double arm_factors_[ARM_CHAIN_ * ARM_JOINTS], arm_zeros_[ARM_CHAIN_];
 #endif
+#if HAS_MOTORS
+extern const double arm_motor_effects_[ARM_CHAIN_ * ARM_CHAIN_], arm_motor_angles_[ARM_CHAIN_ * ARM_CHAIN_];
+extern const double arm_motor_zeros_[ARM_CHAIN_];
+#endif
 #if HAS_PRISMATIC
 extern const int arm_prismatic_[ARM_JOINTS];
 #endif

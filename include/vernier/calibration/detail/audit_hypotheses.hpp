@@ -5,9 +5,11 @@
 /// Hypotheses on what is wrong with all rows of measured poses, for the audit of data.
 
 #include <optional>
+#include <vector>
 
 #include "vernier/calibration/data_finding.hpp"
 #include "vernier/calibration/detail/audit_fit.hpp"
+#include "vernier/core/function_ref.hpp"
 
 namespace vernier::detail {
 
@@ -16,12 +18,17 @@ struct AuditHypothesis {
   std::optional<FaultKind> kind{};  ///< none: nothing is wrong
   int joint = -1;                   ///< of a zero
   std::vector<int> reversed{};      ///< joints that count in the other direction, ascending
-  int coupled = -1;                 ///< the joint whose values contain those of the joint before it; or none
-  double factor = 1;                ///< of measured lengths or joint angles, to be divided out; of the joint before
-  double zero = 0;                  ///< where the search for a joint's zero starts [rad, m]
-  int convention = 0;               ///< of orientations, see `convention_name`
+  /// Of each joint the factor by which its values contain those of the joint before it, as they are; empty: none do.
+  std::vector<double> couplings{};
+  double factor = 1;   ///< of measured lengths or joint angles, to be divided out
+  double zero = 0;     ///< where the search for a joint's zero starts [rad, m]
+  int convention = 0;  ///< of orientations, see `convention_name`
 
-  /// The rows without the fault; a coupled joint is taken apart before signs are reversed.
+  /// Number of joints that are reversed or coupled.
+  VERNIER_API int faults() const;
+  /// A factor of residuals in comparisons: one fault is simpler than two.
+  double simplicity() const { return 1 + 0.25 * (faults() > 1 ? faults() - 1 : 0); }
+  /// The rows without the fault; coupled joints are taken apart before signs are reversed.
   VERNIER_API AuditRows corrected(const AuditRows& rows, const ArmGeometry& arm) const;
 };
 
@@ -41,13 +48,18 @@ struct HypothesisFit {
 VERNIER_API HypothesisFit fit_hypothesis(const ArmGeometry& nominal, const AuditRows& rows,
                                          const AuditHypothesis& hypothesis);
 
+/// Whether each joint and the one before it turn about parallel axes, so that its values may contain those of that.
+VERNIER_API std::vector<bool> parallel_to_previous(const ArmGeometry& arm);
+/// Calls `f` for every combination of factors -1, 0, 1 of some joints, one a joint, 0 where it may not be coupled.
+VERNIER_API void for_all_couplings(const std::vector<bool>& may_be, FunctionRef<void(const std::vector<double>&)> f);
+
 /// Whether a nominal arm may leave such residuals: a twentieth of the scatter of the positions, or 10 mm.
 VERNIER_API bool plausible_residuals(const ArmGeometry& nominal, const AuditRows& rows,
                                      const AuditResiduals& residuals);
 
 /// The hypothesis that halves the robust residuals and makes them smallest, or that nothing is wrong. Where rows as
-/// they are cannot be those of the arm, every pattern of the joints' signs is registered in closed form, also with a
-/// joint that contains the one before it where their axes are parallel; the best patterns are fitted robustly.
+/// they are cannot be those of the arm, every pattern of the joints' signs is registered in closed form, also with
+/// joints that contain the one before where their axes are parallel; the best patterns are fitted robustly.
 VERNIER_API HypothesisFit best_hypothesis(const ArmGeometry& nominal, const AuditRows& rows, double smallest_zero);
 
 /// Joints and poses that are off by some rows against each other: the pose of row i lies in row i + shift.

@@ -37,6 +37,11 @@ VERNIER_LOCAL Matrix3 rotation_by_convention(int convention, const Vector3& v) {
   return first * (fixed ? x : z);
 }
 
+VERNIER_IMPL int AuditHypothesis::faults() const {
+  return static_cast<int>(reversed.size()) + static_cast<int>(couplings.size()) -
+         static_cast<int>(std::count(couplings.begin(), couplings.end(), 0.0));
+}
+
 VERNIER_IMPL AuditRows AuditHypothesis::corrected(const AuditRows& rows, const ArmGeometry& arm) const {
   AuditRows out = rows;
   if (!kind) return out;
@@ -50,7 +55,9 @@ VERNIER_IMPL AuditRows AuditHypothesis::corrected(const AuditRows& rows, const A
       break;
     case FaultKind::joint_sign:
     case FaultKind::joint_coupling:
-      if (coupled >= 0) VERNIER_LATER(out.joints).col(coupled) -= factor * VERNIER_LATER(out.joints).col(coupled - 1);
+      for (int j = static_cast<int>(couplings.size()) - 1; j > 0; --j)  // the joints before are still as they were
+        VERNIER_LATER(out.joints).col(j) -=
+            couplings[static_cast<std::size_t>(j)] * VERNIER_LATER(out.joints).col(j - 1);
       for (const int j : reversed) VERNIER_LATER(out.joints).col(j) *= -1;
       break;
     case FaultKind::mirrored_frame: {
@@ -107,38 +114,49 @@ VERNIER_IMPL bool plausible_residuals(const ArmGeometry& nominal, const AuditRow
   return residuals.score() <= (std::max)(0.05 * scatter, 0.01);
 }
 
-/// Joints whose values may contain those of the joint before: both turn, about parallel axes.
-VERNIER_LOCAL std::vector<int> coupled_candidates(const ArmGeometry& arm) {
-  std::vector<int> out;
+VERNIER_IMPL std::vector<bool> parallel_to_previous(const ArmGeometry& arm) {
+  std::vector<bool> out(static_cast<std::size_t>(arm.joints()), false);
+  const VectorX parameters = arm.parameters();
   for (int j = 1; j < arm.joints(); ++j) {
-    const double alpha = arm.parameters()(ArmParameters::of_row(j - 1, DhParameter::alpha));
-    if (arm.chain().revolute(j - 1) && arm.chain().revolute(j) && std::abs(std::sin(alpha)) < 1e-6) out.push_back(j);
+    const double alpha = parameters(ArmParameters::of_row(j - 1, DhParameter::alpha));
+    out[static_cast<std::size_t>(j)] =
+        arm.chain().revolute(j - 1) && arm.chain().revolute(j) && std::abs(std::sin(alpha)) < 1e-6;
   }
   return out;
+}
+
+VERNIER_IMPL void for_all_couplings(const std::vector<bool>& may_be, FunctionRef<void(const std::vector<double>&)> f) {
+  std::vector<double> now(may_be.size(), 0.0);
+  for (std::size_t j = 0; j < now.size();) {
+    if (j == 0) f(now);
+    if (!may_be[j] || now[j] < 0) {  // counts 0, 1, -1; a joint at its end carries over
+      now[j++] = 0;
+      continue;
+    }
+    now[j] = now[j] > 0 ? -1 : 1;
+    j = 0;
+  }
 }
 
 /// The patterns of signs and couplings that fit best after registration in closed form, best first.
 VERNIER_LOCAL std::vector<AuditHypothesis> best_patterns(const ArmGeometry& nominal, const AuditRows& rows) {
   constexpr std::size_t kept = 8;
   if (nominal.joints() > max_arm_joints) return {};  // too many patterns
-  const std::vector<Index> few = spread_rows(rows.size(), 60);
-  const AuditRows sample = rows.rows(few);
+  const AuditRows sample = rows.rows(spread_rows(rows.size(), 60));
   std::vector<std::pair<double, AuditHypothesis>> all;
-  const auto assess = [&](int coupled, double factor) {
-    for (unsigned signs = 0; signs < 1u << nominal.joints(); ++signs) {
-      AuditHypothesis pattern{.coupled = coupled, .factor = factor};
+  for_all_couplings(parallel_to_previous(nominal), [&](const std::vector<double>& couplings) {
+    const bool coupled =
+        std::any_of(couplings.begin(), couplings.end(), [](double factor) { return factor < 0 || factor > 0; });
+    for (unsigned signs = coupled ? 0 : 1; signs < 1u << nominal.joints(); ++signs) {
+      AuditHypothesis pattern{.kind = coupled ? FaultKind::joint_coupling : FaultKind::joint_sign};
+      if (coupled) pattern.couplings = couplings;
       for (int j = 0; j < nominal.joints(); ++j)
         if ((signs >> j & 1u) != 0) pattern.reversed.push_back(j);
-      if (coupled < 0 && pattern.reversed.empty()) continue;
-      pattern.kind = coupled >= 0 ? FaultKind::joint_coupling : FaultKind::joint_sign;
       const AuditRows corrected = pattern.corrected(sample, nominal);
       const ArmGeometry arm = starting_frames(nominal, corrected.measured(), true, true);
-      all.emplace_back(audit_residuals(arm, corrected).score(), std::move(pattern));
+      all.emplace_back(pattern.simplicity() * audit_residuals(arm, corrected).score(), std::move(pattern));
     }
-  };
-  assess(-1, 1);
-  for (const int joint : coupled_candidates(nominal))
-    for (const double factor : {1.0, -1.0}) assess(joint, factor);
+  });
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<AuditHypothesis> out;
   for (std::size_t k = 0; k < all.size() && k < kept; ++k) out.push_back(std::move(all[k].second));
@@ -157,9 +175,7 @@ VERNIER_IMPL HypothesisFit best_hypothesis(const ArmGeometry& nominal, const Aud
     }
     // half a turn of a joint's zero may be the same as another joint's sign, which is simpler; so is one fault than two
     const auto weight = [](const HypothesisFit& of) {
-      const double faults =
-          static_cast<double>(of.hypothesis.reversed.size()) + (of.hypothesis.coupled >= 0 ? 1.0 : 0.0);
-      return std::abs(of.zero) > 0.5 ? 2.5 : 1 + 0.25 * (std::max)(0.0, faults - 1);
+      return std::abs(of.zero) > 0.5 ? 2.5 : of.hypothesis.simplicity();
     };
     // in the unit of the measured positions: dividing lengths makes residuals small, too
     const auto score = [](const HypothesisFit& of) {

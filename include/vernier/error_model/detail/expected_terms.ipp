@@ -37,8 +37,9 @@ VERNIER_IMPL JointTerms allowed_terms(const ChainTable& nominal, const ErrorMode
   const int joints = nominal.joints();
   const std::vector<HarmonicSpectrum> spectra = spectra_of(options, joints);
   JointTerms out(joints);
+  out.motors = MotorAngles(options.controller);
   for (int j = 0; j < joints; ++j)
-    if (nominal.revolute(j))
+    if (nominal.revolute(out.motors.row_of(j)))
       out.transmission[static_cast<std::size_t>(j)] =
           orders_of_joint(options, spectra, static_cast<std::size_t>(j), measurements);
   const bool jointwise = out.size() > 0;

@@ -29,7 +29,7 @@ VERNIER_LOCAL std::vector<std::vector<int>> lines_beyond(const ModelSelection& m
       weight(b, j) = effect.squaredNorm();
     }
   });
-  const MatrixX angles = model.problem.joints();
+  const MatrixX angles = terms.motors.angles(model.problem.joints());
   const double threshold = line_threshold(joints * highest);
   std::vector<std::vector<int>> out(static_cast<std::size_t>(joints));
   for (Index j = 0; j < joints; ++j) {

@@ -23,19 +23,22 @@ struct CoverageData {
   std::vector<std::vector<JointRange>> ranges;
   VectorX margins;
   std::vector<bool> periodic;
+  MotorAngles motors{};
 
   CoverageData() = default;
   template <int N>
   explicit CoverageData(const JointCoverage<N>& coverage)
       : ranges(coverage.ranges.begin(), coverage.ranges.end()),
         margins(coverage.margin),
-        periodic(coverage.periodic.begin(), coverage.periodic.end()) {}
+        periodic(coverage.periodic.begin(), coverage.periodic.end()),
+        motors(coverage.motors) {}
   template <int N>
   JointCoverage<N> typed() const {
     JointCoverage<N> out;
     std::copy(ranges.begin(), ranges.end(), out.ranges.begin());
     out.margin = margins;
     std::copy(periodic.begin(), periodic.end(), out.periodic.begin());
+    out.motors = motors;
     return out;
   }
 };

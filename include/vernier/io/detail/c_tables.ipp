@@ -103,7 +103,7 @@ VERNIER_IMPL std::string c_arm_tables(const std::string& type, const std::string
     if (block.joint < 0) {
       const std::string key = traits_of(block.kind).key;
       std::vector<double> parameters = terms.parameters(block.kind);
-      if (block.kind == JointTermBlock::Kind::payload) {
+      if (block.kind == JointTermBlock::Kind::payload || block.kind == JointTermBlock::Kind::bend) {
         const PayloadLoad& load = arm.errors.load();
         parameters.insert(parameters.end(), {load.weight, load.moment(0), load.moment(1), load.moment(2)});
       }

@@ -20,10 +20,12 @@
 
 namespace vernier::detail {
 
-/// The version of the files that are written. Version 4 is read, too, without an estimate, and versions 2 (standard
-/// chains) and 3 (modified ones): they have the orders 1 .. `harmonics` at each joint, and no hysteresis.
-inline constexpr int model_schema_version = 5, oldest_schema_version = 2;
+/// The version of files of arms whose motors err; other files are written as version 5. Version 4 is read, too, without
+/// an estimate, and versions 2 (standard chains) and 3 (modified ones): they have the orders 1 .. `harmonics` at each
+/// joint, and no hysteresis.
+inline constexpr int model_schema_version = 6, oldest_schema_version = 2;
 inline constexpr std::array<std::string_view, 2> joint_type_names{"revolute", "prismatic"};
+inline constexpr std::array<std::string_view, 2> places_of_errors{"chain", "motors"};
 inline constexpr std::array<std::string_view, 2> joint_readings{"commanded", "encoder"};
 inline constexpr std::array<std::string_view, 5> measured_names{"poses", "positions", "contacts", "images",
                                                                 "distances"};
@@ -67,7 +69,9 @@ VERNIER_LOCAL OrderedJson controller_to_json(const ModelData& model) {
     add_limits(joint, types[static_cast<std::size_t>(j)], model.lower(j), model.upper(j));
     joints.push_back(std::move(joint));
   }
-  return {{"chain", std::move(chain)}, {"joints", std::move(joints)}};
+  OrderedJson out{{"chain", std::move(chain)}, {"joints", std::move(joints)}};
+  if (map.motor_errors()) out["errors"] = "motors";
+  return out;
 }
 
 /// Reads what `controller_to_json` writes.
@@ -87,7 +91,8 @@ VERNIER_LOCAL void controller_from_json(const JsonNode& node, ModelData& model) 
   }
   std::vector<JointType> types;
   try {
-    model.controller = ControllerMap(factors, zeros);
+    const bool of_motors = node.has("errors") && named(node.at("errors"), places_of_errors) == 1;
+    model.controller = ControllerMap(factors, zeros).with_motor_errors(of_motors);
     types = model.controller.types(chain_types);
   } catch (const std::invalid_argument& error) {
     node.fail(error.what());
@@ -98,6 +103,18 @@ VERNIER_LOCAL void controller_from_json(const JsonNode& node, ModelData& model) 
     const auto k = static_cast<std::size_t>(j);
     read_limits_of(joints.at(k), types[k], model.lower(j), model.upper(j));
   }
+}
+
+/// An arm whose gears err where those of its controller do: what a file does not say of each arm.
+VERNIER_LOCAL void place_errors(FittedArm& arm, const ControllerMap& controller) {
+  JointTerms terms = arm.errors.terms();
+  terms.motors = MotorAngles(controller);
+  arm.errors = JointErrors(std::move(terms), arm.errors.coefficients()).under(arm.errors.load());
+}
+
+VERNIER_LOCAL void require_placed_errors(const FittedArm& arm, const ControllerMap& controller) {
+  demand(arm.errors.empty() || arm.errors.terms().motors == MotorAngles(controller),
+         "save: gears of the model err at other joints than its controller says: give the fit the same controller");
 }
 
 VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
@@ -113,7 +130,10 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
   const Provenance& from = model.provenance;
   demand(std::isfinite(from.position_sigma), "save: position_sigma is not finite");
   const bool modified = model.nominal.modified();
-  OrderedJson out{{"schema_version", model_schema_version},
+  require_placed_errors(model.identified, model.controller);
+  if (model.fallback) require_placed_errors(*model.fallback, model.controller);
+  const bool of_motors = !MotorAngles(model.controller).none();
+  OrderedJson out{{"schema_version", of_motors ? model_schema_version : 5},
                   {"written_by",
                    message("vernier ", VERNIER_VERSION_MAJOR, ".", VERNIER_VERSION_MINOR, ".", VERNIER_VERSION_PATCH)},
                   {"name", model.name}};
@@ -221,10 +241,16 @@ VERNIER_IMPL ModelData parse_model(const std::string& content, const std::string
                 {},
                 {}};
   if (root.has("controller")) controller_from_json(root.at("controller"), out);
+  const bool of_motors = !MotorAngles(out.controller).none();
+  if (of_motors) place_errors(out.identified, out.controller);
   if (root.has("coverage") && !root.has("outside_arm")) root.fail("key 'outside_arm' is missing");
   if (root.has("outside_arm")) {
     out.fallback = arm_from_json(nominal, root.at("outside_arm"));
     out.coverage = coverage_from_json(root.at("coverage"), joints);
+    if (of_motors) {
+      place_errors(*out.fallback, out.controller);
+      out.coverage.motors = MotorAngles(out.controller);
+    }
   }
   if (root.has("thermal")) {
     const JsonNode node = root.at("thermal");

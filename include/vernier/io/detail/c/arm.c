@@ -7,7 +7,7 @@ static inline void arm_at_(const double *q, const double *previous, double *fram
 #endif
 #if HAS_FALLBACK
   double slope[ARM_CHAIN_], near_frame[12], columns[6 * ARM_CHAIN_], *near_J = J ? columns : 0;
-  const double gate = arm_gate_at_(&arm_coverage_of_model_, q, slope);
+  const double gate = arm_gate_of_model_(q, slope);
   if (gate >= 1) {
     arm_arm_at_(&arm_identified_, q, previous, frame, J);
   } else {
@@ -101,7 +101,7 @@ ARM_API double arm_gate(const double q[ARM_JOINTS]) {
 #endif
 #if HAS_FALLBACK
   {
-    const double of_model = arm_gate_at_(&arm_coverage_of_model_, chain, 0);
+    const double of_model = arm_gate_of_model_(chain, 0);
     if (of_model < gate) gate = of_model;
   }
 #endif

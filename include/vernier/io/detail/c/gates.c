@@ -44,6 +44,23 @@ static inline double arm_gate_at_(const arm_coverage_ *coverage, const double *q
 #endif
 #if HAS_FALLBACK
 
+/* The gate of the arm with all its errors: of the ranges of the joints, or of the motors that err. */
+static inline double arm_gate_of_model_(const double *q, double *gradient) {
+#if HAS_MOTORS
+  double angles[ARM_CHAIN_], of_motors[ARM_CHAIN_], gate;
+  int i, k;
+  arm_to_motors_(q, angles);
+  gate = arm_gate_at_(&arm_coverage_of_model_, angles, of_motors);
+  for (i = 0; gradient && i < ARM_CHAIN_; ++i) {
+    gradient[i] = 0;
+    for (k = 0; k < ARM_CHAIN_; ++k) gradient[i] += of_motors[k] * arm_motor_angles_[k * ARM_CHAIN_ + i];
+  }
+  return gate;
+#else
+  return arm_gate_at_(&arm_coverage_of_model_, q, gradient);
+#endif
+}
+
 /* From `far` to `near` by the gate, the rotation along the geodesic; `far` and its Jacobian are overwritten. */
 static inline void arm_blend_(double gate, const double *slope, const double *near_frame, const double *near_J,
                             double *far_frame, double *far_J) {

@@ -1,5 +1,31 @@
 R"c(
 /* ---- errors of the joints. Derivatives `rate` are ARM_CHAIN_ x ARM_CHAIN_, a column a commanded joint; 0 for none ---- */
+#if HAS_MOTORS
+
+/* Angles of the motors, whose gears err, from joint values of the chain. */
+static inline void arm_to_motors_(const double *q, double *angles) {
+  int i, j;
+  for (j = 0; j < ARM_CHAIN_; ++j) {
+    angles[j] = arm_motor_zeros_[j];
+    for (i = 0; i < ARM_CHAIN_; ++i)
+      if (arm_motor_angles_[j * ARM_CHAIN_ + i] != 0) angles[j] += arm_motor_angles_[j * ARM_CHAIN_ + i] * q[i];
+  }
+}
+
+/* Adds what errors of the motors do to the joints. */
+static inline void arm_add_motors_(const double *errors, const double *rates, double *joints, double *rate) {
+  int i, j, k, m;
+  for (i = 0; i < ARM_CHAIN_; ++i)
+    for (j = 0; j < ARM_CHAIN_; ++j) {
+      const double moved = arm_motor_effects_[i * ARM_CHAIN_ + j];
+      if (moved == 0) continue;
+      joints[i] += moved * errors[j];
+      for (k = 0; rate && k < ARM_CHAIN_; ++k)
+        for (m = 0; m < ARM_CHAIN_; ++m)
+          rate[m * ARM_CHAIN_ + i] += moved * rates[k * ARM_CHAIN_ + j] * arm_motor_angles_[k * ARM_CHAIN_ + m];
+    }
+}
+#endif
 #if HAS_LINEAR
 
 static inline double arm_linear_(const arm_arm_ *arm, int joint, double q) {
@@ -268,10 +294,80 @@ static inline void arm_add_guides_(const arm_arm_ *arm, const arm_links_ *links,
   }
 }
 #endif
+#if HAS_PAYLOAD_BEND
+
+/* Adds how the joints' frames bend about their x and y axes under what is carried at the end of the nominal chain.
+ * Parameters: those of the payload. */
+static inline void arm_add_bends_(const arm_arm_ *arm, const arm_links_ *links, const double *carried, double *shift,
+                                double *turn, double *rates) {
+  const double *c = arm->terms[ARM_PAYLOAD_BEND_].of, *down = arm->terms[ARM_PAYLOAD_BEND_].parameters;
+  const double *load = down + 7, weight = load[0];
+  double moment[3];
+  int i, j, k;
+  arm_rotate_(carried, load + 1, moment);
+  for (j = 0; j < 3; ++j) moment[j] += weight * carried[9 + j];
+  for (i = 0; i < ARM_CHAIN_; ++i, c += 2) {
+    const double *x = links->x + 3 * i, *y = links->y + 3 * i, *origin = links->origin + 3 * i;
+    double bent[3] = {0, 0, 0};
+    for (k = -1; k < (rates ? ARM_CHAIN_ : 0); ++k) { /* -1: the motion itself, else its change by joint k */
+      const double *axis = links->axis + 3 * (k < 0 ? 0 : k);
+      double lever[3], torque[3], pull[3], arm_of[3], v[3], w[3], about_x, about_y;
+      int slides = 0;
+#if HAS_PRISMATIC
+      slides = k >= 0 && arm_prismatic_[k];
+#endif
+      if (k >= 0 && k <= i && slides) { /* moves frame and load alike */
+        arm_cross_(axis, bent, w);
+        for (j = 0; j < 3; ++j) rates[6 * k + j] += w[j];
+        continue;
+      }
+      for (j = 0; j < 3; ++j) {
+        lever[j] = moment[j] - weight * (k > i ? links->point[3 * k + j] : origin[j]);
+        pull[j] = down[j];
+      }
+      if (k > i && slides)
+        for (j = 0; j < 3; ++j) lever[j] = weight * axis[j];
+      else if (k > i)
+        arm_cross_(axis, lever, lever);
+      else if (k >= 0)
+        arm_cross_(down, axis, pull);
+      arm_cross_(lever, pull, torque);
+      about_x = c[0] * arm_dot_(x, torque);
+      about_y = c[1] * arm_dot_(y, torque);
+      for (j = 0; j < 3; ++j) v[j] = about_x * x[j] + about_y * y[j];
+      if (k < 0) {
+        arm_cross_(origin, v, w);
+        for (j = 0; j < 3; ++j) {
+          bent[j] = v[j];
+          turn[j] += v[j];
+          shift[j] += w[j];
+        }
+        continue;
+      }
+      if (k <= i) { /* the frame turns as well */
+        arm_cross_(axis, bent, w);
+        for (j = 0; j < 3; ++j) {
+          v[j] += w[j];
+          arm_of[j] = origin[j] - links->point[3 * k + j];
+        }
+        arm_cross_(axis, arm_of, w);
+        arm_cross_(w, bent, w);
+        for (j = 0; j < 3; ++j) rates[6 * k + j] += w[j];
+      }
+      arm_cross_(origin, v, w);
+      for (j = 0; j < 3; ++j) {
+        rates[6 * k + j] += w[j];
+        rates[6 * k + 3 + j] += v[j];
+      }
+    }
+  }
+}
+#endif
 #if HAS_MOTION
 
-/* Tilts of the joints' frames under gravity, and guides: a motion of the arm's end in the base frame of the chain. */
-static inline void arm_add_motion_(const arm_arm_ *arm, const arm_links_ *links, const double *q, double *end, double *J) {
+/* Tilts and bends of the joints' frames, and guides: a motion of the arm's end in the base frame of the chain. */
+static inline void arm_add_motion_(const arm_arm_ *arm, const arm_links_ *links, const double *carried, const double *q,
+                                 double *end, double *J) {
   double shift[3] = {0, 0, 0}, turn[3] = {0, 0, 0}, rates[6 * ARM_CHAIN_], R[9], left[9], rotated[9], v[3], w[3];
   const double none = 0.0 * arm->orders; /* 0 that no compiler makes a call of memset */
   int j, k;
@@ -280,6 +376,7 @@ static inline void arm_add_motion_(const arm_arm_ *arm, const arm_links_ *links,
   int i;
 #endif
   (void)q;
+  (void)carried;
   for (k = 0; k < 6 * ARM_CHAIN_; ++k) rates[k] = none;
 #if HAS_TILT
   for (i = 0; arm->terms[ARM_TILT_].of && i < ARM_CHAIN_; ++i) {
@@ -328,6 +425,9 @@ static inline void arm_add_motion_(const arm_arm_ *arm, const arm_links_ *links,
     }
   }
 #endif
+#if HAS_PAYLOAD_BEND
+  if (arm->terms[ARM_PAYLOAD_BEND_].of) arm_add_bends_(arm, links, carried, shift, turn, J ? rates : 0);
+#endif
 #if HAS_STRAIGHTNESS
   if (arm->terms[ARM_STRAIGHTNESS_].of) arm_add_guides_(arm, links, q, shift, turn, J ? rates : 0);
 #endif
@@ -360,31 +460,54 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
   arm_links_ links;
 #if HAS_LINKS
   arm_links_ nominal;
+  double carried[12]; /* the end of the nominal chain */
+#endif
+#if HAS_MOTORS
+  double angles[ARM_CHAIN_], before[ARM_CHAIN_], errors[ARM_CHAIN_], rates[ARM_CHAIN_ * ARM_CHAIN_];
+  const double *at = angles, *from = previous ? before : 0;
+  double *erring = errors, *slopes = J ? rates : 0;
+#else
+  const double *at = q, *from = previous;
+  double *erring = joints, *slopes = J ? rate : 0;
 #endif
   int i, j, k;
-  (void)previous;
+  (void)from;
+  (void)at;
+  (void)erring;
+  (void)slopes;
   for (k = 0; k < ARM_CHAIN_; ++k) {
     joints[k] = q[k];
     for (i = 0; i < ARM_CHAIN_; ++i) rate[k * ARM_CHAIN_ + i] = i == k ? 1 : 0;
   }
+#if HAS_MOTORS
+  arm_to_motors_(q, angles);
+  if (previous) arm_to_motors_(previous, before);
+  for (k = 0; k < ARM_CHAIN_; ++k) {
+    errors[k] = 0;
+    for (i = 0; i < ARM_CHAIN_; ++i) rates[k * ARM_CHAIN_ + i] = 0;
+  }
+#endif
 #if HAS_LINKS
-  arm_identity_(end);
-  arm_walk_(arm_nominal_rows_, q, end, &nominal);
+  arm_identity_(carried);
+  arm_walk_(arm_nominal_rows_, q, carried, &nominal);
 #endif
 #if HAS_LINEAR
-  arm_add_linear_(arm, q, joints, J ? rate : 0);
+  arm_add_linear_(arm, at, erring, slopes);
 #endif
 #if HAS_GRAVITY
   if (arm->terms[ARM_GRAVITY_].of) arm_add_gravity_(arm, &nominal, joints, J ? rate : 0);
 #endif
 #if HAS_PAYLOAD
-  if (arm->terms[ARM_PAYLOAD_].of) arm_add_payload_(arm, &nominal, end, joints, J ? rate : 0);
+  if (arm->terms[ARM_PAYLOAD_].of) arm_add_payload_(arm, &nominal, carried, joints, J ? rate : 0);
 #endif
 #if HAS_HYSTERESIS
-  arm_add_hysteresis_(arm, q, previous, joints, J ? rate : 0);
+  arm_add_hysteresis_(arm, at, from, erring, slopes);
 #endif
 #if HAS_TRANSMISSION
-  if (arm->orders) arm_add_harmonics_(arm, q, joints, J ? rate : 0);
+  if (arm->orders) arm_add_harmonics_(arm, at, erring, slopes);
+#endif
+#if HAS_MOTORS
+  arm_add_motors_(errors, rates, joints, J ? rate : 0);
 #endif
   arm_identity_(end);
   arm_walk_(arm->rows, joints, end, &links);
@@ -416,7 +539,8 @@ static inline void arm_arm_at_(const arm_arm_ *arm, const double *q, const doubl
       }
   }
 #if HAS_MOTION
-  if (arm->terms[ARM_TILT_].of || arm->terms[ARM_STRAIGHTNESS_].of) arm_add_motion_(arm, &nominal, q, end, J);
+  if (arm->terms[ARM_TILT_].of || arm->terms[ARM_PAYLOAD_BEND_].of || arm->terms[ARM_STRAIGHTNESS_].of)
+    arm_add_motion_(arm, &nominal, carried, q, end, J);
 #endif
   if (J) { /* from the flange to the tool point, from the chain's base to the base */
     double lever[3], moved[3];

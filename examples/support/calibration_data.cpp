@@ -55,7 +55,10 @@ vn::Split<N> hold_out(const vn::Dataset<N>& data, const CalibrationOptions& o, c
     return vn::split(data, {.test_fraction = o.test_fraction, .seed = seed}, same);
   }
   rule = fmt::format("every row i with i % {} = 0, counted from 0", o.test_every);
-  return vn::split_every(data, o.test_every, same);
+  vn::Split<N> out = vn::split_every(data, o.test_every, same);
+  if (const vn::Index more = out.test.size() - (data.size() + o.test_every - 1) / o.test_every; more > 0)
+    rule += fmt::format(", and {} more at the same poses", more);
+  return out;
 }
 
 /// The poses of one reflector in a file.

@@ -46,6 +46,7 @@ int fail(const char* name, const std::string& what, int code) {
   if (const std::size_t at = output_stream.empty() ? std::string::npos : line.find(output_stream);
       at != std::string::npos)
     line.replace(at, output_stream.size(), "standard output");
+  if (line.starts_with(std::string(name) + ": ")) line.erase(0, std::strlen(name) + 2);  // of the function so called
   say(fmt::format("{}: {}", styled(name, Look::bad, STDERR_FILENO), one_line(line)));
   return code;
 }

@@ -122,7 +122,13 @@ vernier::RobotDescription choose_robot(const RobotOptions& options, vernier::Urd
     const vernier::Vector3 down(options.down[0], options.down[1], options.down[2]);
     if (!(down.norm() > 1e-3 && down.allFinite())) throw UsageError("--down has no direction");
     out.down = down.normalized();
+    out.down_stated = true;
   }
+  if (!out.down_stated && !out.modified && out.rows.front().joint == vernier::JointType::prismatic)
+    fmt::print(
+        "{}: gravity is taken to act along joint 1, which slides; if it is a rail, state the direction by --down or by "
+        "\"down\" in the robot file\n",
+        out.name);
   return out;
 }
 

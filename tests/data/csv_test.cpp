@@ -402,6 +402,8 @@ std::vector<Malformed> malformed_files() {
       {"names in capitals",
        "Q1_RAD,Q2_RAD,X_MM,Y_MM,Z_MM\n1,2,3,4,5\n",
        {"line 1: no column q1_rad", "is 'Q1_RAD' q1_rad?"}},
+      {"names of a controller", "J1,J2,x_mm,y_mm,z_mm\n1,2,3,4,5\n", {"; call 'J1' q1_rad or q1_deg"}},
+      {"another name", "q1_deg,Joint 2,x_mm,y_mm,z_mm\n1,2,3,4,5\n", {"; call 'Joint 2' q2_rad or q2_deg"}},
       {"semicolons", "q1_rad;q2_rad;x_mm;y_mm;z_mm\n1;2;3;4;5\n", {"line 1", "separated by ';'", "--separator ';'"}},
       {"tabs", "q1_rad\tq2_rad\tx_mm\ty_mm\tz_mm\n1\t2\t3\t4\t5\n", {"by tabs", "--separator tab"}},
       {"two units of a joint", "q1_rad,q1_deg,q2_rad,x_mm,y_mm,z_mm\n1,2,3,4,5,6\n", {"line 1", "q1_rad", "q1_deg"}},

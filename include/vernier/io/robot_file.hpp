@@ -52,6 +52,7 @@ struct RobotDescription {
   bool base_known = false;                    ///< whether the base frame is known, not a starting value
   bool tool_known = false;                    ///< likewise the tool frame
   Vector3 down = -Vector3::UnitZ();           ///< direction of gravity where the first row stands; a unit vector
+  bool down_stated = false;                   ///< whether the user stated it; else it is taken to be that default
 
   /// Of an arm of the catalogue.
   template <int N, class Convention>

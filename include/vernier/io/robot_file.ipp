@@ -200,6 +200,7 @@ VERNIER_IMPL RobotDescription load_robot(const std::string& path) {
     const double length = down.norm();
     if (!(length > 1e-3)) root.at("down").fail("has no direction");
     out.down = Vector3(down(0), down(1), down(2)) / length;
+    out.down_stated = true;
   }
   return out;
 }

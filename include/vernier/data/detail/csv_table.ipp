@@ -105,6 +105,20 @@ VERNIER_IMPL std::optional<CsvColumn> CsvTable::find(std::string_view stem, cons
   return found;
 }
 
+/// Whether a controller may call the joint of a column so: J1, joint_1, axis1 or A1 for the stem q1_.
+VERNIER_LOCAL bool names_joint(std::string_view name, std::string_view stem) {
+  std::string plain(name);
+  for (char& c : plain)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  for (const std::string_view word : {"joint", "axis", "j", "a"})
+    for (const std::string_view between : {"", "_", " "})
+      if (message('q', std::string_view(plain).substr((std::min)(plain.size(), word.size() + between.size())), '_') ==
+              stem &&
+          plain.starts_with(message(word, between)))
+        return true;
+  return false;
+}
+
 VERNIER_IMPL CsvColumn CsvTable::require_column(std::string_view stem, const Quantity& quantity) const {
   if (auto column = find(stem, quantity)) return *column;
   std::string present, hint;
@@ -114,6 +128,10 @@ VERNIER_IMPL CsvColumn CsvTable::require_column(std::string_view stem, const Qua
     if (const std::string known = nearest_column(name); known.starts_with(stem) && hint.empty())
       hint = message("; is '", printable(name), "' ", known, "?");
   const auto name = [&](std::size_t unit) { return message(stem, quantity.units[unit].first); };
+  for (const std::string_view other : header_)
+    if (hint.empty() && names_joint(other, stem))
+      hint = message("; call '", printable(other), "' ", name(0),
+                     quantity.units.size() > 1 ? " or " + name(1) : std::string());
   throw DataError(message(file_, ", line ", header_line_, ": no column ", name(0),
                           quantity.units.size() > 1 ? " or " + name(1) : std::string(), " in the header (", present,
                           ")", hint));

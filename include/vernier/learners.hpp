@@ -2,8 +2,8 @@
 #pragma once
 
 /// @file
-/// Every regressor and every metaheuristic of the library; it needs Eigen alone. `vernier.hpp` has those of the paper and
-/// of calibrations. The library's own headers never include this one.
+/// Every regressor and every metaheuristic of the library; it needs Eigen alone. `vernier.hpp` has those of the paper
+/// and of calibrations. The library's own headers never include this one.
 
 #include "vernier/regression/back_propagation.hpp"
 #include "vernier/regression/elm.hpp"

@@ -103,7 +103,8 @@ TEST_F(PlanPoses, NewPosesWithinTheirConstraints) {
   EXPECT_NE(done.output.find("abb_irb120: 25 poses of 300 candidates"), std::string::npos) << done.output;
   EXPECT_NE(done.output.find("tool out of its box"), std::string::npos) << done.output;
   EXPECT_NE(done.output.find("the first three register the tracker"), std::string::npos) << done.output;
-  EXPECT_NE(done.output.find("These poses measure 150 values, fewer than the unknowns"), std::string::npos) << done.output;
+  EXPECT_NE(done.output.find("These poses measure 150 values, fewer than the unknowns"), std::string::npos)
+      << done.output;
   EXPECT_NE(done.output.find("Not covered by these poses: q1 in "), std::string::npos) << done.output;
   EXPECT_NE(done.output.find("--cover 1 plans a pose"), std::string::npos) << done.output;
   const auto joints = read_joints<6>(folder_ / "poses.csv");

@@ -78,7 +78,8 @@ VERNIER_IMPL ReportInput report_input(const VerificationReport& report, const st
                      {}};
   for (std::size_t j = 0; j < report.joints.size(); ++j) {
     const JointCheck& joint = report.joints[j];
-    joints.rows.push_back({report.joint_name(j), joint.determined ? detail::fixed_digits(joint.zero_change * 1e3, 4) : "",
+    joints.rows.push_back({report.joint_name(j),
+                           joint.determined ? detail::fixed_digits(joint.zero_change * 1e3, 4) : "",
                            joint.determined ? detail::fixed_digits(1.96 * joint.zero_std * 1e3, 4) : "",
                            report.joint_types[j] == JointType::revolute ? "mrad" : "mm",
                            joint.determined ? brief(joint.zero_p) : "", brief(joint.once_p),

@@ -41,7 +41,7 @@ std::vector<Table> tables() {
   using namespace detail;
   return {{"RAPID", joined({rapid_harmless, rapid_functions}),
            joined({rapid_joint_moves, rapid_linear_moves, rapid_circular_moves, rapid_move_options}), rapid_statements},
-          {"KRL", joined({krl_harmless, krl_functions}), "", krl_statements},
+          {"KRL", joined({krl_harmless, krl_functions, krl_words, krl_words_alone}), "", krl_statements},
           {"URScript", std::string(urscript_harmless), joined({urscript_joint_moves, urscript_linear_moves}),
            urscript_statements},
           {"Fanuc", std::string(fanuc_harmless), std::string(fanuc_move_options), fanuc_statements}};

@@ -548,5 +548,181 @@ TEST(StatementDetails, MovesAndElementsOfUrscript) {
             "5 d: no move of this file uses it\n9 movej(get_inverse_kin(d,qnear=x,tcp=y)): a tool of its own\n");
 }
 
+// ---- what a program changes, and what need not be set ----
+
+/// The names of targets that are corrected in a known tool and work object.
+std::string in_known_frames(const RobotProgram& program) {
+  std::string out;
+  for (const ProgramTarget& target : program.targets)
+    if (program.tools.count(target.tool) != 0 && program.workobjects.count(target.workobject) != 0) out += target.name;
+  return out;
+}
+
+const std::string krl_numbers = "={X 1,Y 2,Z 3,A 0,B 0,C 0}";
+
+TEST(KrlValues, OfExpressionsAreComputed) {
+  for (const char* rest : {":{X 0,Y 0,Z 50,A 0,B 0,C 0}", "+XOFF", ":f(1)", " : XOFF"}) {
+    const RobotProgram program = krl_lines("e" + krl_numbers + rest + "\nLIN e\n");
+    EXPECT_EQ(corrected(program), "") << rest;
+    EXPECT_NE(remarks(program).find("7 LIN e: computed, not a literal"), std::string::npos) << remarks(program);
+  }
+}
+
+// Data of tools and bases hold where every way to their use has set them.
+TEST(KrlFrameData, IsSetOnEveryWay) {
+  const std::string base = "BASE_DATA[2]" + krl_numbers + "\n", tool = "TOOL_DATA[2]" + krl_numbers + "\n";
+  const std::string use = "$TOOL=$NULLFRAME\n$BASE=BASE_DATA[2]\nLIN a\n", init = "DEF init()\n" + base + "END\n";
+  const auto known = [](const std::string& lines, const std::string& routines = "") {
+    return in_known_frames(krl_lines(lines, routines));
+  };
+  EXPECT_EQ(known(base + use), "a");
+  EXPECT_EQ(known("init()\n" + use, init), "a");
+  EXPECT_EQ(known(base + "sub()\n", "DEF sub()\n" + use + "END\n"), "a");
+  EXPECT_EQ(known(tool + "BAS(#TOOL,2)\n$BASE=$NULLFRAME\nLIN a\n"), "a");
+  EXPECT_EQ(known("GOTO L1\n" + base + "L1:\n" + use), "");
+  EXPECT_EQ(known("IF x THEN\nGOTO L1\nENDIF\n" + base + "L1:\n" + use), "");
+  EXPECT_EQ(known(use, init), "");
+  EXPECT_EQ(known("IF $IN[1] THEN\ninit()\nENDIF\n" + use, init), "");
+  EXPECT_EQ(known("sub()\n" + base, "DEF sub()\n" + use + "END\n"), "");
+  EXPECT_EQ(known("BAS(#TOOL,2)\n$BASE=$NULLFRAME\nLIN a\n" + tool), "");
+  EXPECT_EQ(known("LOOP\ninit()\nEXIT\nENDLOOP\n" + use, "DEF init()\nIF x THEN\nRETURN\nENDIF\n" + base + "END\n"),
+            "");
+  EXPECT_EQ(known("SLIN a WITH $BASE=BASE_DATA[2], $TOOL=$NULLFRAME\n" + base), "");
+  const std::string data = "DECL FDAT FP1={TOOL_NO 2,BASE_NO 2,IPO_FRAME #BASE}\n";
+  EXPECT_EQ(known(data + tool + base + "FDAT_ACT=FP1\nBAS(#FRAMES)\nLIN a\n"), "a");
+  EXPECT_EQ(known(data + "FDAT_ACT=FP1\nBAS(#FRAMES)\nLIN a\n" + tool + base), "");
+}
+
+TEST(KrlFlangeData, ThatTheProgramChangesIsUnknown) {
+  const std::string data = "DECL FDAT FP1={TOOL_NO 0,BASE_NO 0,IPO_FRAME #BASE}\nDECL LDAT L1={VEL 2,ORI_TYP #VAR}\n";
+  const std::string use = "FDAT_ACT=FP1\nBAS(#FRAMES)\nLIN a\n", sub = "DEF sub(x:OUT)\nEND\n";
+  EXPECT_EQ(in_known_frames(krl_lines(data + "n=FP1.TOOL_NO\nFDAT_ACT=FP1\nBAS(#FRAMES)\nLIN a\n")), "a");
+  for (const char* change : {"FP1.TOOL_NO=5", "FP1={TOOL_NO 5,BASE_NO 0,IPO_FRAME #BASE}", "FP1=FP2", "sub(FP1)",
+                             "CREAD(h,s,FP1)", "n=sub(FP1.BASE_NO)", "IF x THEN\nFP1.BASE_NO=n\nENDIF"}) {
+    EXPECT_EQ(in_known_frames(krl_lines(data + change + "\n" + use, sub)), "") << change;
+    EXPECT_EQ(in_known_frames(krl_lines(data + "LOOP\n" + use + change + "\nENDLOOP\n", sub)), "") << change;
+  }
+  EXPECT_EQ(in_known_frames(krl_lines(use)), "");  // declared elsewhere
+  EXPECT_EQ(in_known_frames(krl_lines(data, "DEF other()\n" + use + "END\n")), "");
+  EXPECT_EQ(in_known_frames(krl_lines(data, "DEF other(FP1:IN)\n" + use + "END\n")), "");
+  EXPECT_EQ(in_known_frames(krl_lines(data + "FDAT_ACT=FP1\nn=sub(2)\nBAS(#FRAMES)\nLIN a\n", sub)), "");
+  const std::string line = "LDAT_ACT=L1\nBAS(#CP_DAT)\nLIN a\n";
+  EXPECT_EQ(corrected(krl_lines(data + line)), "a");
+  for (const char* change : {"L1.ORI_TYP=#CONSTANT", "L1=L2", "sub(L1)"})
+    EXPECT_EQ(corrected(krl_lines(data + change + "\n" + line, sub)), "") << change;
+}
+
+TEST(KrlParameters, AreNoTargetsOfTheFile) {
+  const RobotProgram program =
+      krl_lines("PTP a\nsub(XFOO)\n", "DEF sub(a:IN, c[]:OUT)\nLIN a\nLIN c[1]\na.X=5\nc" + krl_value + "END\n");
+  EXPECT_EQ(corrected(program), "a");
+  EXPECT_EQ(about(program, "LIN a"), "a parameter");
+  EXPECT_EQ(about(program, "LIN c[1]"), "a parameter");
+  EXPECT_EQ(corrected(krl_lines("", "DEFFCT INT f(a:IN)\nPTP a\nENDFCT\nDEF other()\nPTP a\nEND\n")), "a");
+}
+
+// A call of another file may have the name of a harmless statement.
+TEST(KrlWords, AreHarmlessAsStatementsAlone) {
+  for (const char* call :
+       {"LOAD()", "STOP()", "SYNC()", "HALT()", "CONFIRM(1)", "n=REAL(1)", "EXIT()", "INTERRUPT()"}) {
+    const RobotProgram program = krl_lines(std::string(call) + "\nLIN a\n");
+    EXPECT_EQ(corrected(program), "") << call;
+    EXPECT_EQ(about(program, "a").find("line 6, "), 0u) << call;
+  }
+  for (const char* statement :
+       {"HALT", "BRAKE", "BRAKE F", "INT n", "SIGNAL s $IN[1]", "CONFIRM $x", "STOP WHEN PATH=1"})
+    EXPECT_EQ(corrected(krl_lines(std::string(statement) + "\nLIN a\n")), "a") << statement;
+}
+
+TEST(ChangedTargets, StayAsTheyAre) {
+  for (const char* change : {"a.Z=a.Z+100", "a=b", "a=inv_pos(b)"}) {
+    const RobotProgram program = krl_lines("PTP a\n" + std::string(change) + "\nPTP a\nPTP b\n");
+    EXPECT_EQ(corrected(program), "b") << change;
+    EXPECT_EQ(about(program, change), "the program changes this target");
+    EXPECT_EQ(before(program, "b"), "");
+  }
+  EXPECT_EQ(corrected(krl_lines("DECL E6AXIS H={A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\nH.A1=10\nPTP a\n")), "a");
+  for (const char* change : {"a[0]=0.9", "a=get_actual_tcp_pose()", "a.remove(0)", "a.append(1)", "a.insert(0,0.9)",
+                             "n=a.pop()", "textmsg(a.pop())", "a.clear()"}) {
+    const RobotProgram program = ur_lines("movej(a)\n" + std::string(change) + "\nmovej(a)\nmovej(b)\n");
+    EXPECT_EQ(corrected(program).find('a'), std::string::npos) << change;
+    EXPECT_NE(corrected(program).find('b'), std::string::npos) << change;
+    EXPECT_NE(remarks(program).find("the program changes this target"), std::string::npos) << change;
+  }
+  EXPECT_EQ(corrected(ur_lines("movej(a)\nn=a.length()\nmovej(b)\nmovej(c)\nmovej(d)\n")), "abcd");
+}
+
+TEST(UrscriptScopes, NamesMeanWhatTheyDoThere) {
+  const std::string tool = "p[0,0,0.1,0,0,0]\n", joints = "[1,1,1,1,1,1]\n";
+  const auto tool_of_a = [](const std::string& lines, const std::string& routines = "") {
+    return named(ur_lines(lines + "movel(a)\n", routines), "a").tool != "";
+  };
+  EXPECT_TRUE(tool_of_a("t=" + tool + "set_tcp(t)\n"));
+  EXPECT_TRUE(tool_of_a("set_tcp(t)\n", "t=" + tool));
+  EXPECT_TRUE(tool_of_a("t=" + tool + "def mount():\nset_tcp(t)\nend\nmount()\n"));
+  EXPECT_NE(named(ur_lines("while x:\nt=" + tool + "set_tcp(t)\nmovel(b)\nend\n"), "b").tool, "");
+  EXPECT_FALSE(tool_of_a("mount(x)\n", "t=" + tool + "def mount(t):\nset_tcp(t)\nend\n"));
+  EXPECT_FALSE(tool_of_a("set_tcp(t)\n", "def f():\nlocal t=" + tool + "end\n"));
+  EXPECT_FALSE(tool_of_a("set_tcp(t)\n", "def f():\nglobal t=" + tool + "end\n"));
+  EXPECT_FALSE(tool_of_a("if x:\nt=" + tool + "end\nset_tcp(t)\n"));
+  EXPECT_FALSE(tool_of_a("if x:\nt=" + tool + "else:\nset_tcp(t)\nend\n"));
+  EXPECT_FALSE(tool_of_a("set_tcp(t)\nt=" + tool));
+  EXPECT_FALSE(tool_of_a("t=" + tool + "t[2]=0.2\nset_tcp(t)\n"));
+  const auto near_of_a = [](const std::string& lines, const std::string& routines = "") {
+    const RobotProgram program = ur_lines(lines, routines);
+    return corrected(program) == "a" && named(program, "a").joints.allFinite();
+  };
+  const std::string move = "movej(get_inverse_kin(a, qnear=q))\n";
+  EXPECT_TRUE(near_of_a("q=" + joints + move));
+  EXPECT_FALSE(near_of_a("def go(q):\n" + move + "end\ngo(x)\n", "q=" + joints));
+  EXPECT_FALSE(near_of_a(move, "def f():\nq=" + joints + "end\n"));
+  EXPECT_FALSE(near_of_a("if x:\nq=" + joints + "end\n" + move));
+  EXPECT_FALSE(near_of_a("q=" + joints + move + "movej(get_inverse_kin(a, qnear=[2,2,2,2,2,2]))\n"));
+  EXPECT_EQ(about(ur_lines(move), "a"), "line 6: the joint values near it are not known");
+  for (const char* way : {"local q=", "q="})
+    EXPECT_EQ(about(ur_lines("movej(q)\n", "def f():\n" + (way + joints) + "end\n"), "movej(q)"),
+              "not assigned in this routine");
+  EXPECT_EQ(corrected(ur_lines("movej(q)\n", "def f():\nglobal q=" + joints + "end\n")), "q");
+  // the partner of a pose is that of its routine
+  EXPECT_FALSE(named(ur_lines("w_p=p[1,2,3,0,0,0]\nmovel(w_p)\n", "def f():\nlocal w_q=" + joints + "end\n"), "w_p")
+                   .joints.allFinite());
+  EXPECT_FALSE(
+      named(ur_lines("w_p=p[1,2,3,0,0,0]\nw_q=" + joints + "w_q[0]=2\nmovel(w_p)\n"), "w_p").joints.allFinite());
+}
+
+TEST(UrscriptMoves, HaveNoOtherArguments) {
+  for (const char* move :
+       {"movel(a, frame=\"x\")", "movel(a,1,1,0,0,5)", "movej(a,1,blend=3)", "movec(a,b,1,1,0,1,7)", "movep(a,1,1,0,1)",
+        "movej(get_inverse_kin(a,[1,1,1,1,1,1]), profile=1)", "servoj(a,1,1,0.002,0.1,300,2)", "optimovel(a,t=3)"}) {
+    const RobotProgram program = ur_lines(std::string(move) + "\nmovel(c)\n");
+    EXPECT_EQ(corrected(program), "c") << move;
+    EXPECT_EQ(about(program, "a").find("line 6, "), 0u) << move << about(program, "a");
+  }
+  for (const char* move :
+       {"movel(a,1,1,0,0)", "movel(a,v=1,a=2,r=0.1,t=0)", "movec(b,a,1,1,0,mode=1)", "movep(a,1,1,r=0)",
+        "servoj(a,1,1,0.002,lookahead_time=0.1,gain=300)", "movej(a, 1.4,\n v=f(1,2))"})
+    EXPECT_NE(corrected(ur_lines(std::string(move) + "\n", "", {"f"})).find('a'), std::string::npos) << move;
+}
+
+// A carriage return alone ends a line, also behind a comment.
+TEST(LineEnds, AreCarriageReturnsAlone) {
+  const std::string value = "p[1,2,3,0,0,0]";
+  const std::string script = "def m():\r# x\rmovel(" + value + ") # y\rforce_mode(1)\r movel(" + value + ")\rend\r";
+  const RobotProgram program = parse_program(urscript, script, "m.script");
+  ASSERT_EQ(program.targets.size(), 1u);
+  EXPECT_EQ(program.targets[0].line, 3u);
+  EXPECT_EQ(program.targets[0].column, 7u);
+  EXPECT_NE(remarks(program).find("5 target: line 4, force_mode(1)"), std::string::npos) << remarks(program);
+  EXPECT_EQ(program.end_of_line, "\r");
+  EXPECT_EQ(stamped(script, program, {}), "# VERNIER-CORRECTED:\r" + script);
+  const std::string krl_text =
+      "DEF m() ; x\rPTP {A1 1,A2 2,A3 3,A4 4,A5 5,A6 6} ; y\rnobody()\rPTP {A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\rEND\r";
+  const RobotProgram other = parse_program(krl, krl_text, "m.src");
+  ASSERT_EQ(other.targets.size(), 1u);
+  EXPECT_EQ(stamped(krl_text, other, {}).find("DEF m() ; x\r; VERNIER-CORRECTED:\rPTP"), 0u);
+  EXPECT_EQ(parse_program(krl, "DEF m()\r\nPTP {A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\r\nEND\r\n", "m.src").targets[0].line,
+            2u);
+}
+
 }  // namespace
 }  // namespace vernier::robot_statements_test

@@ -37,7 +37,7 @@ TEST(TokensWhiteBox, OfEachKind) {
   EXPECT_EQ(tokens_of(""), "e|");
   EXPECT_EQ(tokens_of("\xEF\xBB\xBFMoveL p10"), "wMoveL|wp10|e|");
   EXPECT_EQ(tokens_of("a1 $b _c \xE4z 1a"), "wa1|w$b|w_c|w\xE4z|n1|wa|e|");
-  EXPECT_EQ(tokens_of("a\tb\rc\fd\ve f"), "wa|wb|wc|wd|we|wf|e|");
+  EXPECT_EQ(tokens_of("a\tb\rc\fd\ve f"), "wa|wb|e|wc|wd|we|wf|e|");
   EXPECT_EQ(tokens_of("a@b`c[d{e/f:g"), "wa|s@|wb|s`|wc|s[|wd|s{|we|s/|wf|s:|wg|e|");
   EXPECT_EQ(tokens_of("a ! b \" c\nd ; e"), "wa|e|wd|e|");
 }

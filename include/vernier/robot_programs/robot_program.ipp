@@ -152,7 +152,7 @@ VERNIER_IMPL std::string stamped(std::string_view text, const RobotProgram& prog
   for (const std::string& line : lines)
     for (std::size_t i = 0; i < line.size(); i += width) add(std::string_view(line).substr(i, width));
   std::string out(text.substr(0, (std::min)(program.stamp_at, text.size())));
-  if (!out.empty() && out.back() != '\n' && program.stamp_at > 3) out += program.end_of_line;
+  if (!out.empty() && out.back() != '\n' && out.back() != '\r' && program.stamp_at > 3) out += program.end_of_line;
   return out.append(stamp).append(text.substr((std::min)(program.stamp_at, text.size())));
 }
 

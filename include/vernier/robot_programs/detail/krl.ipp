@@ -35,11 +35,10 @@ class KrlReader final : private StatementReader {
       i = end + 1;
     }
     for (const Use& use : uses_) resolve(use);
-    for (std::size_t k = 0; k < program_.targets.size(); ++k) flange_data(program_.targets[k]);
+    flange_data();
+    find_unset_frames();
     for (const auto& [tool, number] : changed_frames_) forget(tool ? program_.tools : program_.workobjects, number);
-    for (const auto& [name, change] : changes_)
-      if (names_.count(name) != 0)
-        remark(line_of(change.first), excerpt(text_, change.first, change.second), "the program changes this target");
+    drop_changed();
     solve();
     std::vector<bool> keep(program_.targets.size());
     for (std::size_t k = 0; k < keep.size(); ++k) keep[k] = typed_.count(program_.targets[k].name) != 0;
@@ -60,8 +59,10 @@ class KrlReader final : private StatementReader {
     TargetMove move = TargetMove::unknown;
     std::size_t point = ProgramStep::no_point;
     Frames frames{};
-    bool moves = true;  // whether it is a move
+    bool moves = true;       // whether it is a move
+    bool parameter = false;  // of its routine
   };
+  using FrameData = std::pair<bool, std::string>;  // whether of a tool; number, empty where it is computed
   struct Component {
     std::string name{};
     std::optional<double> number{};
@@ -71,6 +72,7 @@ class KrlReader final : private StatementReader {
   struct FlangeData {
     std::string tool{}, base{};
     bool external = false;
+    std::size_t routine = 0;  // whose it is; 0: of a data list
   };
 
   std::size_t line_of(std::size_t i) const { return text_.tokens[i].line; }
@@ -93,9 +95,42 @@ class KrlReader final : private StatementReader {
     return word(i);
   }
 
+  // also names of data that is assigned or given to routines
   void find_routines() {
-    for (std::size_t i = 0; i < text_.tokens.size(); ++i)
+    static const auto operators = words_of(
+        "and or exor not b_and b_or b_exor b_not if for then sec when while until to step switch case return prio bas");
+    std::vector<std::pair<std::size_t, bool>> open;  // round brackets: where they end, whether of a call
+    for (std::size_t i = 0; i < text_.tokens.size(); ++i) {
       if (const std::string head = word(i); head == "def" || head == "deffct") routines_.insert(routine_name(i));
+      while (!open.empty() && open.back().first <= i) open.pop_back();
+      if (text_.is(i, '(') && text_.tokens[i].partner != 0)
+        open.emplace_back(text_.tokens[i].partner,
+                          (!open.empty() && open.back().second) ||
+                              (i > 0 && text_.is_word(i - 1) && operators.count(word(i - 1)) == 0));
+      if (!text_.is_word(i)) continue;
+      const bool first = i == 0 || !text_.is(i - 1, '.');
+      const std::string type = i > 0 ? word(i - 1) : std::string();
+      const bool declared = type == "fdat" || type == "ldat";
+      if ((!open.empty() && open.back().second) || (first && !declared && is_assigned(i)))
+        changed_data_.insert(word(i));
+    }
+  }
+
+  // name = , name[..].X = , ..
+  bool is_assigned(std::size_t i) const {
+    const std::size_t end = text_.tokens.size();
+    std::size_t k = text_.is(i + 1, '[') ? behind_brackets(text_, i + 1, end) : i + 1;
+    while (text_.is(k, '.') && text_.is_word(k + 1))
+      k = text_.is(k + 2, '[') ? behind_brackets(text_, k + 2, end) : k + 2;
+    return text_.is(k, '=') && !text_.is(k + 1, '=');
+  }
+
+  // the names of a routine's parameters, whose head is at token i
+  void find_parameters(std::size_t i) {
+    parameters_.clear();
+    while (!text_.is_line_end(i) && !text_.is(i, '(')) ++i;
+    for (; !text_.is_line_end(i) && !text_.is(i, ')'); ++i)
+      if (text_.is_word(i) && !text_.is(i - 1, ':')) parameters_.insert(word(i));
   }
 
   void line(std::size_t i, std::size_t end) {
@@ -114,13 +149,16 @@ class KrlReader final : private StatementReader {
     if (first == "def" || first == "deffct") {
       flow_.begin(routine_name(i), false);
       break_order();
+      find_parameters(i);
       act_.clear();
       depth_ = 0;
       data_ = false;
+      ++routine_;
       return;
     }
     if (first == "defdat") {
       data_ = true;
+      parameters_.clear();
       return;
     }
     if (first == "end" || first == "endfct" || first == "enddat") {
@@ -145,7 +183,7 @@ class KrlReader final : private StatementReader {
     }
     if (first == "fdat" && text_.is_word(i + 1) && text_.is(i + 2, '=')) return fdat(word(i + 1), i + 3, end);
     if (first == "ldat" && text_.is_word(i + 1) && text_.is(i + 2, '=')) return ldat(i, end);
-    if (first == "interrupt" || first == "trigger") return at_any_time(i, end);
+    if ((first == "interrupt" || first == "trigger") && !text_.is(i + 1, '(')) return at_any_time(i, end);
     if (i > begin || (data_ && text_.is_word(i) && text_.is_word(i + 1))) return calls(i + 1, end);  // a declaration
     if (structure(i, end, first)) {
       act_.clear();
@@ -176,8 +214,15 @@ class KrlReader final : private StatementReader {
 
   // a call, or another statement
   void statement(std::size_t i, std::size_t end, const std::string& first) {
+    static const auto words = words_of(krl_words), alone = words_of(krl_words_alone);
     const std::string what = excerpt(text_, i, end);
     calls(i + 1, end);
+    const bool harmless = (words.count(first) != 0 && i + 1 < end && (text_.is_word(i + 1) || text_.is(i + 1, ':'))) ||
+                          (alone.count(first) != 0 && i + 1 == end);
+    if (harmless) {
+      act_.clear();
+      return;
+    }
     if (routines_.count(first) != 0) {
       flow_.call(first);
       break_order();
@@ -199,7 +244,7 @@ class KrlReader final : private StatementReader {
       if (name == "tool_data" || name == "base_data") changed_frames_.insert({name == "tool_data", index(k + 1)});
       if (name == "$tool" || name == "$base")
         flow_.set(name == "$tool" ? ProgramState::tool : ProgramState::workobject, {"?", {}, line_of(k)});
-      if (!name.empty())
+      if (!name.empty() && parameters_.count(name) == 0)
         uses_.push_back({{k, k + 1}, i, TargetMove::unknown, ProgramStep::no_point, {{}, {}, why}, false});
     }
   }
@@ -216,6 +261,7 @@ class KrlReader final : private StatementReader {
       const std::size_t end = behind_brackets(text_, k + 1, last);
       if (routines_.count(name) != 0) {
         flow_.call(name);
+        act_.clear();
         arguments(k, end, message("line ", line_of(k), ", ", excerpt(text_, k, end), ": the routine may change it"));
       } else if (statements_.find(name).kind != StatementClass::harmless) {
         unknown(line_of(k), excerpt(text_, k, end));
@@ -246,6 +292,8 @@ class KrlReader final : private StatementReader {
       return true;
     }
     if (text_.is(i + 1, '=') && i + 1 < end) return false;
+    static const auto conditions = words_of("if while until switch case for return");
+    if (text_.is(i + 1, '(') && conditions.count(first) == 0) return false;  // a routine of another file
     static const auto loops = words_of("for while loop repeat"), blocks = words_of("if switch"),
                       ends = words_of("endif endfor endwhile endloop until endswitch"),
                       branches = words_of("else case default");
@@ -289,15 +337,22 @@ class KrlReader final : private StatementReader {
     else if (name == "tool_data" || name == "base_data")
       changed_frames_.insert({name == "tool_data", index(i + 1)});
     else
-      changes_.push_back({name, {i, end}});
+      changed(name, i, end);
     if (name == "fdat_act" || name == "ldat_act") act_.clear();
+  }
+
+  // A routine's parameters are no variables of the file.
+  void changed(const std::string& name, std::size_t i, std::size_t end) {
+    if (parameters_.count(name) != 0) return;
+    changes_.push_back({name, {i, end}});
+    changed_.insert(name);
   }
 
   // name = value, at tokens from i to end
   void value(const std::string& name, std::size_t at, std::size_t i, std::size_t end) {
     const bool tool = name == "$tool" || name == "tool_data", base = name == "$base" || name == "base_data";
     if (name == "fdat_act" || name == "ldat_act") {
-      act_[name] = word(i);
+      act_[name] = i + 1 == end ? word(i) : std::string();
       if (name == "fdat_act" && text_.is(i, '{')) {
         fdat(name, i, end);
         act_[name] = name;
@@ -306,8 +361,10 @@ class KrlReader final : private StatementReader {
       flow_.set(tool ? ProgramState::tool : ProgramState::workobject, {frame(tool, at, i, end), {}, line_of(at)});
     } else if (tool || base) {
       frame_data(tool, index(at + 1), i, end);
-    } else if (!text_.is(i, '{')) {
-      changes_.push_back({name, {at, end}});
+    } else if (!text_.is(i, '{') || behind_brackets(text_, i, end) != end) {
+      changed(name, at, end);
+    } else if (parameters_.count(name) != 0) {
+      remark(line_of(at), excerpt(text_, at, end), "a parameter");
     } else {
       const std::size_t before = program_.targets.size();
       target(name, i, end);
@@ -315,17 +372,60 @@ class KrlReader final : private StatementReader {
     }
   }
 
-  // TOOL_DATA[n] = {..}, at tokens from i to end. One that is used before, or not always set, is not known.
+  // TOOL_DATA[n] = {..}, at tokens from i to end. One that is not always set, or to several values, is not known.
   void frame_data(bool tool, const std::string& number, std::size_t i, std::size_t end) {
     auto& frames = tool ? program_.tools : program_.workobjects;
     const auto parts = text_.is(i, '{') ? components(i, end) : std::vector<Component>{};
     const std::optional<Isometry3> frame = i == end ? frame_of(parts) : std::nullopt;
     const auto stated = frames.find(number);
-    if (!frame || number.empty() || depth_ > 0 || used_frames_.count({tool, number}) != 0 ||
-        (stated != frames.end() && !stated->second.isApprox(*frame, 0)))
+    if (!frame || number.empty() || depth_ > 0 || (stated != frames.end() && !stated->second.isApprox(*frame, 0))) {
       changed_frames_.insert({tool, number});
+      return;
+    }
+    frames[number] = *frame;
+    if (data_)
+      data_frames_.insert({tool, number});
     else
-      frames[number] = *frame;
+      flow_.set_data(data_name({tool, number}), {"stated", {}, line_of(i - 1)});
+  }
+
+  static std::string data_name(const FrameData& data) { return (data.first ? "tool " : "base ") + data.second; }
+
+  // TOOL_DATA[n] that a program sets hold where every way to a use has set them.
+  void find_unset_frames() {
+    constexpr std::size_t most = 512;  // of both
+    std::map<FrameData, std::vector<std::size_t>> uses;
+    for (const auto& [data, point] : used_frames_)
+      if ((data.first ? program_.tools : program_.workobjects).count(data.second) != 0 && data.second != "0" &&
+          data_frames_.count(data) == 0 && changed_frames_.count(data) == 0)
+        uses[data].push_back(point);
+    if (uses.size() > most) {
+      for (const auto& use : uses) changed_frames_.insert(use.first);
+      return;
+    }
+    for (auto use = uses.begin(); use != uses.end();) {
+      std::vector<std::string> names;
+      const auto first = use;
+      for (; use != uses.end() && names.size() < ProgramFlow::most_data; ++use) names.push_back(data_name(use->first));
+      const ProgramFlow flow = flow_.of_data(names);
+      std::size_t slot = 0;
+      for (auto one = first; one != use; ++one, ++slot)
+        if (!std::all_of(one->second.begin(), one->second.end(),
+                         [&](std::size_t point) { return point != ProgramStep::no_point && flow.is_set(point, slot); }))
+          changed_frames_.insert(one->first);
+    }
+  }
+
+  // Targets that the program changes stay as they are.
+  void drop_changed() {
+    std::vector<bool> dropped(program_.targets.size(), false);
+    for (const auto& [name, change] : changes_) {
+      const auto named = names_.find(name);
+      if (named == names_.end()) continue;
+      remark(line_of(change.first), excerpt(text_, change.first, change.second), "the program changes this target");
+      for (const std::size_t k : named->second) dropped[k] = true;
+    }
+    drop(dropped);
   }
 
   // the name of a frame that is the value at tokens from i to end; ? where it is not known
@@ -344,7 +444,7 @@ class KrlReader final : private StatementReader {
   }
 
   std::string numbered(bool tool, const std::string& number) {
-    used_frames_.insert({tool, number});
+    if (!number.empty()) used_frames_.push_back({{tool, number}, flow_.point()});
     return number.empty() ? "?" : number;
   }
 
@@ -406,13 +506,18 @@ class KrlReader final : private StatementReader {
       set(ProgramState::workobject, "?");
     } else if (command == "frames" || command == "ptp_params" || command == "cp_params" || command == "cp_dat") {
       const auto data = flange_data_.find(act_["fdat_act"]);
-      const bool known = data != flange_data_.end() && !data->second.external;
+      const bool known = data != flange_data_.end() && !data->second.external && here(data->second.routine);
       if (command != "cp_dat") {
-        set(ProgramState::tool, known && !data->second.tool.empty() ? data->second.tool : "?");
-        set(ProgramState::workobject, known && !data->second.base.empty() ? data->second.base : "?");
+        const auto number = [&](bool tool) {
+          const std::string name = known ? (tool ? data->second.tool : data->second.base) : "";
+          return name.empty() || name == "?" ? "?" : numbered(tool, name);
+        };
+        set(ProgramState::tool, number(true));
+        set(ProgramState::workobject, number(false));
       }
       if (command.starts_with("cp_")) {
-        if (kept_orientation_.count(act_["ldat_act"]) != 0)
+        const auto kept = kept_orientation_.find(act_["ldat_act"]);
+        if (kept != kept_orientation_.end() && here(kept->second))
           set(ProgramState::orientation, {});
         else if (statements_.find("bas").kind != StatementClass::harmless)
           lose(ProgramState::orientation, line_of(i), excerpt(text_, i, end));
@@ -421,6 +526,9 @@ class KrlReader final : private StatementReader {
       apply(line_of(i), "bas", "#" + command, excerpt(text_, i, end));
     }
   }
+
+  // Data of a routine are of no other one, those of a data list of all.
+  bool here(std::size_t routine) const { return routine == 0 || routine == routine_; }
 
   // LDAT name={.., ORI_TYP #VAR}: whether linear moves with it reach their orientation
   void ldat(std::size_t i, std::size_t end) {
@@ -434,19 +542,29 @@ class KrlReader final : private StatementReader {
           if (!kept)
             remark(line_of(i), excerpt(text_, i, i + 2), "linear moves with it need not reach their orientation");
         }
-    if (kept) kept_orientation_.insert(word(i + 1));
+    const std::string name = word(i + 1);
+    const bool again = !declared_ldat_.insert(name).second;
+    if (kept && !again && k == end && changed_data_.count(name) == 0)
+      kept_orientation_[name] = data_ ? 0 : routine_;
+    else
+      kept_orientation_.erase(name);
   }
 
   void fdat(const std::string& name, std::size_t i, std::size_t end) {
     if (!text_.is(i, '{')) return;
     FlangeData data;
+    data.routine = data_ ? 0 : routine_;
     for (const Component& part : components(i, end)) {
       const std::string text = part.number ? message(static_cast<long long>(std::clamp(*part.number, -1e9, 1e9))) : "?";
       if (part.name == "tool_no") data.tool = text;
       if (part.name == "base_no") data.base = text;
       if (part.name == "ipo_frame") data.external = word(part.value.second - 1) == "tcp";
     }
-    flange_data_[name] = data;
+    if (i != end) data.tool = data.base = "?";
+    const bool act = name == "fdat_act";  // holds until the next statement
+    const auto [found, added] = flange_data_.try_emplace(name, data);
+    if (act) found->second = data;
+    if (!act && (changed_data_.count(name) != 0 || !added)) found->second.tool = found->second.base = "?";
   }
 
   // {type: NAME value, ..} at token i, which is then behind it
@@ -591,7 +709,7 @@ class KrlReader final : private StatementReader {
         remark(line_of(i), excerpt(text_, i, last), "a relative move");
       } else {
         if (text_.is(first, '{') && behind_brackets(text_, first, end) == last) target({}, first, end);
-        uses_.push_back({{first, last}, i, kind, point, frames});
+        uses_.push_back({{first, last}, i, kind, point, frames, true, parameters_.count(word(first)) != 0});
       }
       first = last + 1;
     }
@@ -623,7 +741,7 @@ class KrlReader final : private StatementReader {
         text_.is_word(first) &&
         (last == first + 1 || (text_.is(first + 1, '[') && behind_brackets(text_, first + 1, last) == last));
     const auto named = names_.find(word(first));
-    if (name_alone && named != names_.end() && !named->second.empty()) {
+    if (name_alone && !use.parameter && named != names_.end() && !named->second.empty()) {
       step.element = named->second.size() > 1;
       for (const std::size_t k : named->second) {
         step.target = k;
@@ -634,18 +752,35 @@ class KrlReader final : private StatementReader {
     if (!use.moves) return;
     add_step(steps_, {{}, {}, {}, use.move});
     if (text_.is(first, '{') && behind_brackets(text_, first, last) == last) return;  // refused before
-    program_.uncorrected.push_back(
-        {text_.tokens[use.instruction].line, excerpt(text_, use.instruction, last),
-         name_alone ? "no literal of this file, perhaps of its data list" : "computed, not a literal"});
+    const bool computed = !name_alone || changed_.count(word(first)) != 0;
+    program_.uncorrected.push_back({text_.tokens[use.instruction].line, excerpt(text_, use.instruction, last),
+                                    use.parameter ? "a parameter"
+                                    : computed    ? "computed, not a literal"
+                                                  : "no literal of this file, perhaps of its data list"});
   }
 
-  // The data list says by FP1 which tool and base XP1 is in.
-  void flange_data(ProgramTarget& target) {
-    if (target.kind != TargetKind::pose || target.name.size() < 2 || target.name[0] != 'x') return;
-    const auto found = flange_data_.find("f" + target.name.substr(1));
-    if (found == flange_data_.end()) return;
-    target.tool = found->second.external ? "external" : found->second.tool;
-    target.workobject = found->second.external ? "external" : found->second.base;
+  // The data list says by FP1 which tool and base XP1 is in. Its frames must hold at each move, or always.
+  void flange_data() {
+    std::vector<bool> has(program_.targets.size(), false), moves = has;
+    const auto uses = [&](std::size_t k, std::size_t point) {
+      const ProgramTarget& target = program_.targets[k];
+      used_frames_.push_back({{true, target.tool}, point});
+      used_frames_.push_back({{false, target.workobject}, point});
+      moves[k] = true;
+    };
+    for (std::size_t k = 0; k < has.size(); ++k) {
+      ProgramTarget& target = program_.targets[k];
+      if (target.kind != TargetKind::pose || target.name.size() < 2 || target.name[0] != 'x') continue;
+      const auto found = flange_data_.find("f" + target.name.substr(1));
+      if (found == flange_data_.end()) continue;
+      has[k] = true;
+      target.tool = found->second.external ? "external" : found->second.tool;
+      target.workobject = found->second.external ? "external" : found->second.base;
+    }
+    for (const ProgramStep& step : steps_)
+      if (step.target && has[*step.target] && step.point != ProgramStep::no_point) uses(*step.target, step.point);
+    for (std::size_t k = 0; k < has.size(); ++k)
+      if (has[k] && !moves[k]) uses(k, ProgramStep::no_point);
   }
 
   std::set<std::string> typed_{};
@@ -653,15 +788,21 @@ class KrlReader final : private StatementReader {
   std::map<std::size_t, std::size_t> literals_{};  // target by its first token
   std::map<std::string, FlangeData> flange_data_{};
   std::vector<std::pair<std::string, Span>> changes_{};
-  std::set<std::pair<bool, std::string>> changed_frames_{};  // whether of a tool; number, empty where it is computed
-  std::set<std::pair<bool, std::string>> used_frames_{};     // those that a move may use
-  std::set<std::string> routines_{};                         // of this file
-  std::set<std::string> kept_orientation_{};                 // LDAT with which orientations are reached
-  std::map<std::string, std::string> act_{};                 // what FDAT_ACT and LDAT_ACT are
-  Frames spline_{};                                          // of the present spline
-  std::size_t depth_ = 0;                                    // of blocks
-  bool data_ = false;                                        // in a data list
-  int nesting_ = 0;                                          // of instructions in one line
+  std::set<std::string> changed_{};  // their names
+  std::set<FrameData> changed_frames_{};
+  std::set<FrameData> data_frames_{};                             // of a data list
+  std::vector<std::pair<FrameData, std::size_t>> used_frames_{};  // and the point of the program's flow
+  std::set<std::string> routines_{};                              // of this file
+  std::set<std::string> parameters_{};                            // of the present routine
+  std::set<std::string> changed_data_{};                          // names whose values may change after they are stated
+  std::map<std::string, std::size_t> kept_orientation_{};         // LDAT with which orientations are reached; routine
+  std::set<std::string> declared_ldat_{};
+  std::map<std::string, std::string> act_{};  // what FDAT_ACT and LDAT_ACT are
+  Frames spline_{};                           // of the present spline
+  std::size_t depth_ = 0;                     // of blocks
+  std::size_t routine_ = 0;                   // number of the present one
+  bool data_ = false;                         // in a data list
+  int nesting_ = 0;                           // of instructions in one line
   std::vector<Use> uses_{};
 };
 

@@ -44,7 +44,7 @@ inline constexpr ProgramStatement krl_statements[] = {
     {"move_emi", "*", StatementClass::voids, ProgramState::everything},
 };
 
-/// Routines and functions of the controller that leave targets as they are, and words that begin a harmless statement.
+/// Routines and functions of the controller that leave targets as they are.
 inline constexpr std::string_view krl_functions =
     "abs acos asin atan atan2 cos sin sqrt tan eb ek lk sacc_cp sacc_joint sapo sapo_ptp sbase sgear_jerk sipo_mode "
     "sjerk sload sori_typ stool stool2 svel_cp svel_joint use_cm_pro_values forward inverse inv_pos cast_from cast_to "
@@ -52,11 +52,16 @@ inline constexpr std::string_view krl_functions =
     "exists_krlmsg clear_krlmsg set_krldlg set_krldlganswer set_krlmsg get_msgbuffer get_sig_inf get_decl_place "
     "getcycdef getsysstate get_system_data getvarsize ioctl ir_stopm ismessageset is_key_pressed m_comment mbx_rec "
     "msgdialog msgnotify msgquit msgstate msgwait pulse remotecmd remoteread rob_stop rob_stop_release "
-    "set_brake_delay sync synccmd cancelprogsync timer_limit varstate vartype wspacegive wspacetake stradd strclear "
+    "set_brake_delay synccmd cancelprogsync timer_limit varstate vartype wspacegive wspacetake stradd strclear "
     "strcomp strcopy strdecllen strfind strlen strtoaxis strtobool strtoe3axis strtoe3pos strtoe6axis strtoe6pos "
-    "strtoframe strtoint strtopos strtoreal strtostring frand halt wait anin anout digin interrupt confirm import "
-    "on_error_proceed brake asystop asycancel bool char int real string frame load inertia fdat ldat pdat signal "
-    "channel struc enum ext extfct extp extfctp const_vel stop time_block";
+    "strtoframe strtoint strtopos strtoreal strtostring frand asystop asycancel";
+
+/// Words that begin a harmless statement where a word follows; as a call they are routines of another file.
+inline constexpr std::string_view krl_words =
+    "wait anin anout digin interrupt confirm import brake bool char int real string frame load inertia fdat ldat pdat "
+    "signal channel struc enum ext extfct extp extfctp const_vel stop time_block";
+/// Words that are a harmless statement by themselves.
+inline constexpr std::string_view krl_words_alone = "halt brake on_error_proceed";
 
 /// Beginnings of functions that may change a variable that they are given.
 inline constexpr std::string_view krl_inputs = "strto cast_ cread sread get_ mbx_";

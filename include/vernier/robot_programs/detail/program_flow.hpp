@@ -63,6 +63,13 @@ class ProgramFlow {
   void call(const std::string& name) { add({Kind::call, {}, name, 0}); }       ///< of a routine of this program
   /// A state has a value from here on.
   VERNIER_API void set(ProgramState state, const StateValue& value);
+  /// Data of this name, which are no state, are set here.
+  VERNIER_API void set_data(const std::string& name, const StateValue& value);
+  static constexpr std::size_t most_data = program_states - 1;  ///< most names that `of_data` follows at once
+  /// The solved flow of data instead of states, of a flow that is not solved.
+  VERNIER_API ProgramFlow of_data(const std::vector<std::string>& names) const;
+  /// Whether every way to a point sets the data with this place among those names.
+  VERNIER_API bool is_set(std::size_t point, std::size_t data) const;
   /// A place to ask for.
   VERNIER_API std::size_t point();
 
@@ -83,6 +90,7 @@ class ProgramFlow {
     jump,
     call,
     set,
+    set_data,
     point
   };
   static constexpr int none = -1, several = -2;  // no other value; routines of one name
@@ -90,7 +98,7 @@ class ProgramFlow {
   struct Event {
     Kind kind;
     ProgramState state;
-    std::string name;  // of a label or routine
+    std::string name;  // of a label, routine or data
     int value;         // of a state, or number of a point
   };
   struct Element {  // values that may hold: that at the beginning of the routine, and another one

@@ -31,6 +31,31 @@ VERNIER_IMPL void ProgramFlow::set(ProgramState state, const StateValue& value) 
   add({Kind::set, state, {}, kept(value)});
 }
 
+VERNIER_IMPL void ProgramFlow::set_data(const std::string& name, const StateValue& value) {
+  add({Kind::set_data, {}, name, kept(value)});
+}
+
+VERNIER_IMPL ProgramFlow ProgramFlow::of_data(const std::vector<std::string>& names) const {
+  ProgramFlow out = *this;
+  for (Routine& routine : out.routines_) {
+    std::erase_if(routine.events, [](const Event& event) { return event.kind == Kind::set; });
+    for (Event& event : routine.events) {
+      if (event.kind != Kind::set_data) continue;
+      const auto found = std::find(names.begin(), names.end(), event.name);
+      if (found == names.end()) continue;
+      event.kind = Kind::set;
+      event.state = static_cast<ProgramState>(found - names.begin());
+    }
+  }
+  out.solve();
+  return out;
+}
+
+VERNIER_IMPL bool ProgramFlow::is_set(std::size_t point, std::size_t data) const {
+  const StateValue value = at(point, static_cast<ProgramState>(data));
+  return value.reason.empty() && !value.name.empty() && at(point, ProgramState::everything).reason.empty();
+}
+
 VERNIER_IMPL std::size_t ProgramFlow::point() {
   add({Kind::point, {}, {}, static_cast<int>(places_.size())});
   places_.push_back({open_.back(), {}});
@@ -190,6 +215,7 @@ VERNIER_IMPL bool ProgramFlow::pass(std::size_t routine, std::size_t depth, std:
         now[index(event.state)] = {false, event.value};
         break;
       }
+      case Kind::set_data: break;
       case Kind::point: places_[static_cast<std::size_t>(event.value)].state = now; break;
     }
   }

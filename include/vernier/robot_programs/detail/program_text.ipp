@@ -52,11 +52,14 @@ VERNIER_IMPL ProgramText ProgramText::of(std::string_view text, const std::strin
     if (end - line_begin > max_line)
       fail_at(out, line, message(end - line_begin, " bytes in a line, at most ", max_line));
   };
+  const auto ends_line = [&](std::size_t k) {  // \n, \r\n, or \r alone
+    return text[k] == '\n' || (text[k] == '\r' && (k + 1 == text.size() || text[k + 1] != '\n'));
+  };
   while (i < text.size()) {
     const char c = text[i];
     const std::size_t begin = i;
     if (c == '\0') fail_at(out, line, "binary data, not text");
-    if (c == '\n') {
+    if (ends_line(i)) {
       line_length(i);
       if (syntax.lines) out.tokens.push_back({Kind::line_end, i, i + 1, line});
       ++line;
@@ -64,11 +67,11 @@ VERNIER_IMPL ProgramText ProgramText::of(std::string_view text, const std::strin
     } else if (c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v') {
       ++i;
     } else if (syntax.comments.find(c) != std::string_view::npos) {
-      while (i < text.size() && text[i] != '\n')
+      while (i < text.size() && !ends_line(i))
         if (text[i++] == '\0') fail_at(out, line, "binary data, not text");
     } else if (syntax.quotes.find(c) != std::string_view::npos) {
       ++i;
-      while (i < text.size() && text[i] != c && text[i] != '\n')
+      while (i < text.size() && text[i] != c && !ends_line(i))
         if (text[i++] == '\0') fail_at(out, line, "binary data, not text");
       if (i < text.size() && text[i] == c) ++i;
       out.tokens.push_back({Kind::text, begin, i, line});
@@ -198,7 +201,7 @@ VERNIER_IMPL std::size_t behind_brackets(const ProgramText& text, std::size_t i,
 }
 
 VERNIER_IMPL void place(const ProgramText& text, std::size_t byte, std::size_t line, ProgramTarget& target) {
-  const std::size_t before = byte == 0 ? std::string_view::npos : text.text.find_last_of('\n', byte - 1);
+  const std::size_t before = byte == 0 ? std::string_view::npos : text.text.find_last_of("\r\n", byte - 1);
   target.line = line;
   target.column = before == std::string_view::npos ? byte + 1 : byte - before;
 }
@@ -257,7 +260,10 @@ VERNIER_IMPL void use_targets(const ProgramText& text, const std::vector<Program
   }
   targets = std::move(sorted);
   sort_by_line(program.uncorrected);
-  program.end_of_line = text.text.find("\r\n") != std::string_view::npos ? "\r\n" : "\n";
+  const bool feeds = text.text.find('\n') != std::string_view::npos;
+  program.end_of_line = text.text.find("\r\n") != std::string_view::npos          ? "\r\n"
+                        : feeds || text.text.find('\r') == std::string_view::npos ? "\n"
+                                                                                  : "\r";
 }
 
 VERNIER_IMPL void sort_by_line(std::vector<Uncorrected>& remarks) {

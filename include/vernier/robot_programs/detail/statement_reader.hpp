@@ -49,6 +49,8 @@ class StatementReader {
   VERNIER_API std::string named_frame(ProgramState state, std::string name, const Isometry3& frame);
   /// The order of moves ends: where the arm stands is not known.
   virtual void break_order() { add_step(steps_, {{}, {}, {}, TargetMove::unknown}); }
+  /// Takes targets away; moves to them have none.
+  VERNIER_API void drop(const std::vector<bool>& dropped);
   /// Gives moves what holds at their points.
   VERNIER_API void solve();
 

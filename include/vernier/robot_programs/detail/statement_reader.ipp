@@ -57,6 +57,23 @@ VERNIER_IMPL std::string StatementReader::named_frame(ProgramState state, std::s
   return found->second;
 }
 
+VERNIER_IMPL void StatementReader::drop(const std::vector<bool>& dropped) {
+  std::vector<std::size_t> index(dropped.size());
+  std::vector<ProgramTarget> kept;
+  for (std::size_t k = 0; k < dropped.size(); ++k) {
+    index[k] = kept.size();
+    if (!dropped[k]) kept.push_back(std::move(program_.targets[k]));
+  }
+  program_.targets = std::move(kept);
+  for (ProgramStep& step : steps_) {
+    if (!step.target) continue;
+    if (dropped[*step.target])
+      step.target.reset();
+    else
+      step.target = index[*step.target];
+  }
+}
+
 VERNIER_IMPL void StatementReader::solve() {
   flow_.solve();
   for (ProgramStep& step : steps_) {

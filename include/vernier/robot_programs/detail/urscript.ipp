@@ -27,12 +27,15 @@ class UrscriptReader final : private StatementReader {
     program_.workobjects["base"] = Isometry3::Identity();
     for (std::size_t i = 0; i + 1 < text_.tokens.size(); ++i)
       if (begins_routine(i)) routines_.insert(std::string(text_.at(i + 1)));
+    find_scopes();
     collect_assignments();
     follow();
-    for (const auto& [name, assigned] : assigned_)
-      if (used_.count(name) != 0 && !assigned.targets.empty())
-        for (const std::size_t token : assigned.computed)
-          remark(line(token), excerpt(text_, token, line_end(token)), "the program changes this target");
+    for (const auto& [variable, assigned] : assigned_) {
+      if (used_.count(variable) == 0 || assigned.targets.empty() || assigned.computed.empty()) continue;
+      for (const std::size_t token : assigned.computed)
+        remark(line(token), excerpt(text_, token, line_end(token)), "the program changes this target");
+      changed_.insert(assigned.targets.begin(), assigned.targets.end());
+    }
     solve();
     join_pairs();
     use_targets(text_, steps_, std::vector<bool>(program_.targets.size(), false), program_);
@@ -41,7 +44,18 @@ class UrscriptReader final : private StatementReader {
  private:
   struct Assigned {
     std::vector<std::size_t> targets{};
-    std::vector<std::size_t> computed{};  // tokens of other values
+    std::vector<std::size_t> computed{};  // tokens of other values, and of what changes them
+    std::size_t token = 0, block = 0;     // of the last target, and the block around it
+  };
+  using Variable = std::pair<std::size_t, std::string>;  // its scope and name
+  struct Scope {                                         // of a routine, the first one of the file
+    std::size_t parent = 0;
+    std::set<std::string, std::less<>> parameters{}, locals{}, assigned{};
+  };
+  struct Block {  // tokens of the branch of a condition, of a loop or routine
+    std::size_t first = 0, last = static_cast<std::size_t>(-1);
+    bool routine = false;
+    std::size_t scope = 0;
   };
 
   static bool is_move(std::string_view word) {
@@ -55,11 +69,92 @@ class UrscriptReader final : private StatementReader {
     return text_.at(i) == "def" || text_.at(i) == "thread" || text_.at(i) == "sec";
   }
 
+  // scopes of routines and blocks, and the names that are assigned in them
+  void find_scopes() {
+    constexpr std::size_t deepest = 100;
+    const std::size_t n = text_.tokens.size();
+    block_of_.assign(n, 0);
+    blocks_.assign(1, {});
+    scopes_.assign(1, {});
+    std::vector<std::size_t> open{0};
+    const auto begin = [&](std::size_t i, bool routine) {
+      const std::size_t scope = routine ? scopes_.size() : blocks_[open.back()].scope;
+      if (routine) scopes_.push_back({blocks_[open.back()].scope});
+      open.push_back(blocks_.size());
+      blocks_.push_back({i, static_cast<std::size_t>(-1), routine, scope});
+    };
+    const auto end = [&](std::size_t i) {
+      if (open.size() == 1) return;
+      blocks_[open.back()].last = i;
+      open.pop_back();
+    };
+    std::size_t depth = 0, routines = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (text_.is(i, '(')) ++depth;
+      if (text_.is(i, ')') && depth > 0) --depth;
+      const std::string_view word = text_.is_word(i) ? text_.at(i) : std::string_view();
+      if (begins_routine(i)) {
+        if (++routines > deepest) fail_at(text_, line(i), message("routines nested deeper than ", deepest));
+        begin(i, true);
+        const std::size_t stop = text_.is(i + 2, '(') ? behind_brackets(text_, i + 2, n) : i + 2;
+        for (std::size_t k = i + 3; k < stop; ++k)
+          if (text_.is_word(k)) scopes_.back().parameters.insert(std::string(text_.at(k)));
+      } else if (word == "if" || word == "while" || word == "for") {
+        begin(i, false);
+      } else if (word == "elif" || word == "else") {
+        if (!blocks_[open.back()].routine) {
+          end(i);
+          begin(i, false);
+        }
+      } else if (word == "end") {
+        if (blocks_[open.back()].routine && routines > 0) --routines;
+        end(i);
+      }
+      block_of_[i] = open.back();
+      if (word.empty() || depth > 0) continue;
+      Scope& scope = scopes_[scope_of(i)];
+      const bool whole = text_.is(i + 1, '=') && !text_.is(i + 2, '=');
+      const std::string_view before = i > 0 && text_.is_word(i - 1) ? text_.at(i - 1) : std::string_view();
+      if (before == "local")
+        scope.locals.insert(std::string(word));
+      else if (before == "global" || (whole && scope_of(i) == 0))
+        globals_.insert(std::string(word));
+      else if (whole)
+        scope.assigned.insert(std::string(word));
+    }
+  }
+  std::size_t scope_of(std::size_t i) const { return blocks_[block_of_[i]].scope; }
+
+  // The variable that a name at token i means: a parameter or local, a global, or one of a routine around it.
+  Variable variable(std::size_t i) const {
+    const std::string name(text_.at(i));
+    std::size_t s = scope_of(i), outer = 0;
+    for (; s != 0; s = scopes_[s].parent) {
+      if (scopes_[s].parameters.count(name) != 0 || scopes_[s].locals.count(name) != 0) return {s, name};
+      if (scopes_[s].assigned.count(name) != 0) outer = s;
+    }
+    return {globals_.count(name) != 0 ? 0 : outer, name};
+  }
+  bool is_parameter(const Variable& variable) const {
+    return scopes_[variable.first].parameters.count(variable.second) != 0;
+  }
+
+  // the only value of a name at token i, where every way there assigns it
+  std::optional<std::size_t> value(std::size_t i) const {
+    const Variable name = variable(i);
+    const auto found = assigned_.find(name);
+    if (found == assigned_.end() || is_parameter(name)) return {};
+    const Assigned& assigned = found->second;
+    if (assigned.targets.size() != 1 || !assigned.computed.empty()) return {};
+    const Block& block = blocks_[assigned.block];
+    if (assigned.token > i || i > block.last) return {};
+    return assigned.targets[0];
+  }
+
   // statements in the order of the text
   void follow() {
     std::size_t depth = 0;       // of brackets
     std::vector<bool> routines;  // of the blocks around: whether each is one
-    std::vector<std::set<std::string, std::less<>>> parameters{{}};
     for (std::size_t i = 0; i + 1 < text_.tokens.size(); ++i) {
       if (is_open(i)) ++depth;
       if ((text_.is(i, ')') || text_.is(i, ']') || text_.is(i, '}')) && depth > 0) --depth;
@@ -73,12 +168,8 @@ class UrscriptReader final : private StatementReader {
         flow_.begin(std::string(text_.at(i + 1)), word == "thread");
         break_order();
         routines.push_back(true);
-        parameters.emplace_back();
         const bool closed = text_.is(i + 2, '(') && text_.tokens[i + 2].partner != 0;
-        const std::size_t end = closed ? text_.tokens[i + 2].partner + 1 : i + 2;
-        for (std::size_t k = i + 3; k < end; ++k)
-          if (text_.is_word(k)) parameters.back().insert(std::string(text_.at(k)));
-        i = end - 1;
+        i = closed ? text_.tokens[i + 2].partner : i + 1;
       } else if (word == "if" || word == "while" || word == "for") {
         flow_.open(word != "if");
         routines.push_back(false);
@@ -86,7 +177,6 @@ class UrscriptReader final : private StatementReader {
         flow_.branch();
       } else if (word == "end") {
         const bool routine = !routines.empty() && routines.back();
-        if (routine && parameters.size() > 1) parameters.pop_back();
         routine ? flow_.end() : flow_.close();
         if (!routines.empty()) routines.pop_back();
       } else if (word == "break" || word == "continue") {
@@ -96,7 +186,6 @@ class UrscriptReader final : private StatementReader {
       } else if (word.starts_with('$')) {  // $ 3 "Waypoint_1": a mark of the editor
         while (!text_.is_line_end(i + 1)) ++i;
       } else if (text_.is(i + 1, '(')) {
-        parameters_ = &parameters.back();
         call(i, word);
       } else if (first && !is_keyword(word) && !assigns(i)) {
         unknown(line(i), excerpt(text_, i, line_end(i)));
@@ -177,12 +266,14 @@ class UrscriptReader final : private StatementReader {
       std::size_t sign = i + 1;
       if (depth == 0 && text_.is_word(i))
         while (text_.is(sign, '[')) sign = behind_brackets(text_, sign, text_.tokens.size());
+      if (changes_list(i)) assigned_[variable(i)].computed.push_back(i);
       const bool name = text_.is_word(i) && text_.is(sign, '=') && !text_.is(sign + 1, '=') && depth == 0;
       if (!name) {
         ++i;
         continue;
       }
-      Assigned& assigned = assigned_[std::string(text_.at(i))];
+      Assigned& assigned = assigned_[variable(i)];
+      names_.insert(std::string(text_.at(i)));
       if (sign != i + 1) {  // an element
         assigned.computed.push_back(i);
         i = sign;
@@ -193,6 +284,10 @@ class UrscriptReader final : private StatementReader {
         if (std::optional<ProgramTarget> found = literal(k); found && (k >= text_.tokens.size() || ends(k))) {
           found->name = std::string(text_.at(i));
           assigned.targets.push_back(program_.targets.size());
+          assigned.token = i;
+          assigned.block = block_of_[i];
+          variables_.resize(program_.targets.size() + 1);
+          variables_.back() = {variable(i), i};
           program_.targets.push_back(std::move(*found));
           i = k;
           continue;
@@ -201,6 +296,15 @@ class UrscriptReader final : private StatementReader {
       assigned.computed.push_back(i);
       i += 2;
     }
+  }
+
+  // name.append(..), name[..].remove(..): a method of a list, other than those that only read
+  bool changes_list(std::size_t i) const {
+    static const auto readers = words_of("length slice shape capacity");
+    if (!text_.is_word(i) || (i > 0 && text_.is(i - 1, '.'))) return false;
+    std::size_t k = i + 1;
+    while (text_.is(k, '[')) k = behind_brackets(text_, k, text_.tokens.size());
+    return text_.is(k, '.') && text_.is_word(k + 1) && text_.is(k + 2, '(') && readers.count(text_.at(k + 1)) == 0;
   }
 
   bool ends(std::size_t k) const { return text_.is_line_end(k) || text_.is(k, ';') || text_.is(k, ':'); }
@@ -213,10 +317,9 @@ class UrscriptReader final : private StatementReader {
       found = literal(k);
       if (!text_.is(k, ')') && !text_.is(k, ',')) found.reset();
     } else if (text_.is_word(k) && (text_.is(k + 1, ')') || text_.is(k + 1, ','))) {
-      const auto assigned = assigned_.find(std::string(text_.at(k)));
-      if (assigned != assigned_.end() && assigned->second.targets.size() == 1 && assigned->second.computed.empty()) {
-        found = program_.targets[assigned->second.targets[0]];
-        tools_.insert(assigned->second.targets[0]);
+      if (const auto target = value(k)) {
+        found = program_.targets[*target];
+        tools_.insert(*target);
       }
     }
     if (!found || found->kind != TargetKind::pose) return {};
@@ -229,13 +332,40 @@ class UrscriptReader final : private StatementReader {
     const std::size_t point = flow_.point();
     std::size_t first = i + 2;
     const std::size_t close = behind_brackets(text_, i + 1, text_.tokens.size()) - 1;
+    const std::string other = other_argument(i, close);
     for (int a = 0; a < (text_.at(i) == "movec" ? 2 : 1); ++a) {
       const std::size_t last = argument_end(first, close);
       ProgramStep step{{}, {}, "base", kind};
       step.point = point;
+      if (!other.empty())
+        step.unknown =
+            message("line ", line(i), ", ", text_.at(i), "(.., ", other, "): what it does to targets is not known");
       target(i, first, last, step);
       first = last + 1;
     }
+  }
+
+  // the first argument of a move that it does not have; empty where there is none
+  std::string other_argument(std::size_t i, std::size_t close) const {
+    std::vector<std::string_view> names;
+    for (const auto& [move, arguments] : urscript_move_arguments)
+      if (move == text_.at(i))
+        for (std::string_view rest = arguments; !rest.empty();) {
+          const std::size_t end = (std::min)(rest.find(' '), rest.size());
+          names.push_back(rest.substr(0, end));
+          rest.remove_prefix((std::min)(end + 1, rest.size()));
+        }
+    std::size_t k = i + 2;
+    for (int target = text_.at(i) == "movec" ? 2 : 1; target > 0 && k < close; --target) k = argument_end(k, close) + 1;
+    for (std::size_t position = 0; k < close; ++position) {
+      const std::size_t last = argument_end(k, close);
+      while (k < last && text_.is_line_end(k)) ++k;
+      const bool named = text_.is_word(k) && text_.is(k + 1, '=') && !text_.is(k + 2, '=');
+      if (named ? std::find(names.begin(), names.end(), text_.at(k)) == names.end() : position >= names.size())
+        return excerpt(text_, k, last);
+      k = last + 1;
+    }
+    return {};
   }
 
   std::size_t argument_end(std::size_t i, std::size_t stop) const {
@@ -262,8 +392,13 @@ class UrscriptReader final : private StatementReader {
         if (++arguments > 4 || (text_.is_word(k + 1) && text_.at(k + 1) == "tcp")) return remark("a tool of its own");
       }
       target(instruction, first + 2, end, step);
-      if (steps_.size() == before + 1 && steps_.back().target && end < last - 1)
-        seeds_[*steps_.back().target] = joints_near(end + 1, argument_end(end + 1, last - 1));
+      for (std::size_t k = before; k < steps_.size() && end < last - 1; ++k) {
+        if (!steps_[k].target) continue;
+        const JointVector<6> near = joints_near(end + 1, argument_end(end + 1, last - 1));
+        const auto [seed, added] = seeds_.try_emplace(*steps_[k].target, near);
+        if (!near.allFinite() || (!added && !(seed->second.array() == near.array()).all()))
+          steps_[k].unknown = message("line ", line(instruction), ": the joint values near it are not known");
+      }
       return;
     }
     if (is_pose(first) || text_.is(first, '[')) {
@@ -277,10 +412,11 @@ class UrscriptReader final : private StatementReader {
       return remark("computed, not a literal");
     }
     if (!text_.is_word(first) || last != first + 1) return remark("computed, not a literal");
-    const std::string name(text_.at(first));
+    const Variable name = variable(first);
     const auto assigned = assigned_.find(name);
-    if (parameters_ != nullptr && parameters_->count(name) != 0) return remark("a parameter");
-    if (assigned == assigned_.end()) return remark("not assigned in this file");
+    if (is_parameter(name)) return remark("a parameter");
+    if (assigned == assigned_.end())
+      return remark(names_.count(name.second) != 0 ? "not assigned in this routine" : "not assigned in this file");
     if (assigned->second.targets.empty()) return remark("its value is computed");
     used_.insert(name);
     step.element = assigned->second.targets.size() > 1 || !assigned->second.computed.empty();
@@ -299,9 +435,7 @@ class UrscriptReader final : private StatementReader {
       const auto found = literal(k);
       if (found && k == last) out = found->joints;
     } else if (text_.is_word(first) && first + 1 == last) {
-      const auto assigned = assigned_.find(std::string(text_.at(first)));
-      if (assigned != assigned_.end() && assigned->second.targets.size() == 1 && assigned->second.computed.empty())
-        out = program_.targets[assigned->second.targets[0]].joints;
+      if (const auto target = value(first)) out = program_.targets[*target].joints;
     }
     return out;
   }
@@ -318,25 +452,39 @@ class UrscriptReader final : private StatementReader {
       ProgramTarget target = all[k];
       if (target.kind == TargetKind::pose && seeds_.count(k) != 0) target.joints = seeds_.at(k);
       if (target.kind == TargetKind::pose && !target.joints.allFinite() && target.name.ends_with("_p")) {
-        const auto partner = assigned_.find(target.name.substr(0, target.name.size() - 1) + "q");
-        if (partner != assigned_.end() && partner->second.targets.size() == 1)
+        const auto& [variable, token] = variables_[k];
+        const auto partner = assigned_.find({variable.first, target.name.substr(0, target.name.size() - 1) + "q"});
+        if (partner != assigned_.end() && partner->second.targets.size() == 1 && partner->second.computed.empty() &&
+            blocks_[partner->second.block].first <= token && token <= blocks_[partner->second.block].last)
           target.joints = all[partner->second.targets[0]].joints;
       }
       index[k] = kept.size();
       const bool pose = target.kind == TargetKind::pose;
+      if (changed_.count(k) != 0) continue;
       if (used[k] || (pose && tools_.count(k) == 0)) kept.push_back(std::move(target));
     }
-    for (ProgramStep& step : steps_)
-      if (step.target) step.target = index[*step.target];
+    for (ProgramStep& step : steps_) {
+      if (!step.target) continue;
+      if (changed_.count(*step.target) != 0)
+        step.target.reset();
+      else
+        step.target = index[*step.target];
+    }
     program_.targets = std::move(kept);
   }
 
-  std::map<std::string, Assigned> assigned_{};
-  std::set<std::string> used_{};
+  std::vector<Block> blocks_{};
+  std::vector<Scope> scopes_{};
+  std::vector<std::size_t> block_of_{};  // of each token
+  std::set<std::string, std::less<>> globals_{};
+  std::map<Variable, Assigned> assigned_{};
+  std::set<std::string> names_{};                              // of these variables
+  std::vector<std::pair<Variable, std::size_t>> variables_{};  // of each target that is assigned, and its token
+  std::set<std::size_t> changed_{};                            // targets that the program changes
+  std::set<Variable> used_{};
   std::set<std::size_t> tools_{};
   std::map<std::size_t, JointVector<6>> seeds_{};
-  std::set<std::string> routines_{};                                // of this file
-  const std::set<std::string, std::less<>>* parameters_ = nullptr;  // of the present routine
+  std::set<std::string> routines_{};  // of this file
 };
 
 VERNIER_IMPL void read_urscript(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,

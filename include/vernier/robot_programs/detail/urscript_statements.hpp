@@ -63,6 +63,17 @@ inline constexpr std::string_view urscript_harmless =
 inline constexpr std::string_view urscript_joint_moves = "movej optimovej servoj";
 inline constexpr std::string_view urscript_linear_moves = "movel optimovel movep movec servoc";
 
+/// A move and the arguments that may follow its targets, in their order.
+struct UrscriptMove {
+  std::string_view name, arguments;  ///< in lower case
+};
+/// Of all moves.
+inline constexpr UrscriptMove urscript_move_arguments[] = {
+    {"movej", "a v t r"},    {"optimovej", "a v r"}, {"servoj", "a v t lookahead_time gain"},
+    {"movel", "a v t r"},    {"optimovel", "a v r"}, {"movep", "a v r"},
+    {"movec", "a v r mode"}, {"servoc", "a v r"},
+};
+
 /// Functions that change what targets mean, or that move without one.
 inline constexpr ProgramStatement urscript_statements[] = {
     {"force_mode", "", StatementClass::voids, ProgramState::following},

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -339,6 +340,246 @@ TEST(StatementsFanuc, AreHarmless) {
       EXPECT_NE(corrected(program).find(name), std::string::npos) << statement << remarks(program);
     EXPECT_EQ(about(program, "P[2]"), "") << statement;
   }
+}
+
+// A routine, and a macro, may have the name of a harmless instruction.
+TEST(StatementsFanuc, NamesThatBeginAsInstructions) {
+  for (const char* statement : {"  CALL WELD",
+                                "  CALL VISION",
+                                "  CALL ARC",
+                                "  CALL WAIT",
+                                "  CALL PAYLOAD(2)",
+                                "  CALL SR[1]",
+                                "  RUN WEAVE",
+                                "  MONITOR LOCK",
+                                "  IF R[1]=1,CALL ARC",
+                                "         =2,CALL TIMER",
+                                "       ELSE,CALL WELD",
+                                "L P[4] 100mm/sec FINE TB .1sec,CALL WELD",
+                                "L P[4] 100mm/sec FINE TA .1sec,CALL SR[2]",
+                                "  GO HOME",
+                                "  IF R[1]=3,GO HOME",
+                                "  DO PICK",
+                                "  F OPEN",
+                                "  M 3",
+                                "  P SHIFT",
+                                "  PR SHIFT",
+                                "  VR CALIB",
+                                "  DI CHECK",
+                                "  TIMER",
+                                "  MESSAGE BOARD",
+                                "  ARC WIRE CUT",
+                                "  ARC START UP",
+                                "  WELD SCHED CHANGE",
+                                "  WEAVE SINE",
+                                "  COL DETECTOR",
+                                "  LOCK JIG",
+                                "  WAIT PART",
+                                "  WAIT 2",
+                                "  END EFFECTOR CHANGE",
+                                "  PAUSE LINE",
+                                "  ABORT PICK",
+                                "  VISION RUN",
+                                "  SKIP CONDITIONING",
+                                "  SOFTFLOAT ENDS",
+                                "  IF JAM",
+                                "  IF JAM THEN",
+                                "  SELECT JIG",
+                                "  FOR KLIFT",
+                                "  ELSE WHERE",
+                                "  ENDFOR X",
+                                "  LBL PRINT",
+                                "  JMP HOME",
+                                "  Hand open 1"}) {
+    const RobotProgram program = tp_lines({tp_move(1), statement, tp_move(2)});
+    EXPECT_NE(corrected(program).find("P[1]"), std::string::npos) << statement;
+    EXPECT_EQ(corrected(program).find("P[2]"), std::string::npos) << statement;
+    EXPECT_EQ(about(program, "P[2]").find("line 4, "), 0u) << statement << remarks(program);
+    EXPECT_NE(remarks(program).find("4 "), std::string::npos) << statement;
+  }
+  const RobotProgram own = tp_lines({"L P[1] 100mm/sec FINE TB .1sec,CALL WELD"});  // it may run during the move
+  EXPECT_EQ(corrected(own), "P[2]P[3]P[4]");
+  EXPECT_EQ(corrected(tp_lines({"  CALL WELD", "  GO HOME", tp_move(1)}, {"weld", "go"})), "P[1]P[2]P[3]P[4]");
+  EXPECT_EQ(corrected(tp_lines({"  CALL SR[1]", tp_move(1)}, {"sr"})), "P[2]P[3]P[4]");
+}
+
+TEST(StatementsFanuc, ExactFormsAreHarmless) {
+  for (const char* statement : {"  WAIT .50(sec)",
+                                "  WAIT R[2](sec)",
+                                "  WAIT (!DI[1])",
+                                "  WAIT $X=1",
+                                "  LOCK VREG",
+                                "  COL DETECT OFF",
+                                "  COL GUARD ADJUST 80",
+                                "  Arc End[2]",
+                                "  Arc Start E1[3]",
+                                "  Weld Start[1,2]",
+                                "  Weave Figure 8[1]",
+                                "  Weave End",
+                                "  VISION RUN_FIND 'A B'",
+                                "  VISION GET_OFFSET 'A' VR[1] JMP LBL[2]",
+                                "  MONITOR END CHK",
+                                "  SKIP CONDITION (DI[1])",
+                                "  SELECT R[1]=1,JMP LBL[1]",
+                                "  FOR R[1]=R[2] DOWNTO 1",
+                                "  TIMER[1:a b]=RESET",
+                                "  PAYLOAD[GP1:2]",
+                                "  DO[1: PICK UP]=ON",
+                                "  ERROR_PROG=X"}) {
+    const RobotProgram program = tp_lines({tp_move(1), statement, tp_move(2)});
+    EXPECT_EQ(corrected(program), "P[1]P[2]P[3]P[4]") << statement << remarks(program);
+  }
+}
+
+// What the text states is not what such moves reach, so it stays.
+TEST(StatementsFanuc, PositionsThatAreChangedStay) {
+  for (const char* change : {"  P[2]=PR[1]", "  IF DI[1]=ON,P[2]=LPOS", "  P[2:b]=P[2]+PR[1]", "  (P[2]=PR[3])"}) {
+    const RobotProgram program = tp_lines({tp_move(1), change, tp_move(2), tp_move(3)});
+    EXPECT_EQ(corrected(program), "P[1]P[3]P[4]") << change;
+    EXPECT_NE(remarks(program).find("the program changes this target"), std::string::npos) << change;
+    EXPECT_EQ(before(program, "P[3]"), "") << change;
+  }
+  const RobotProgram any = tp_lines({tp_move(1), "  P[R[1]]=PR[1]", tp_move(2)});
+  EXPECT_EQ(corrected(any), "");
+  for (const char* name : {"P[1]", "P[2]", "P[3]", "P[4]"}) EXPECT_NE(about(any, name), "") << name;
+  for (const char* option : {"Offset,PR[1]", "Tool_Offset", "Tool_Offset,PR[R[2]]", "Offset", "VOFFSET,VR[1]"}) {
+    const RobotProgram program = tp_lines({tp_move(1), std::string("L P[2] 100mm/sec FINE ") + option, tp_move(3)});
+    EXPECT_EQ(corrected(program), "P[1]P[3]P[4]") << option;
+    EXPECT_NE(about(program, "P[2]"), "") << option;
+  }
+  // one that another move uses as it is remains a target
+  EXPECT_EQ(corrected(tp_lines({tp_move(1), "L P[1] 100mm/sec FINE Offset,PR[1]"})), "P[1]P[2]P[3]P[4]");
+}
+
+TEST(StatementsFanuc, AxesBeyondTheSixth) {
+  const auto joints = [](const std::string& more) {
+    return remarks(parse_program(fanuc_tp,
+                                 "/PROG M\n/MN\n   1:J P[1] 9% FINE ;\n/POS\nP[1]{\n GP1:\n UF : 1, UT : 2,\n J1 = 1 "
+                                 "deg, J2 = 2 deg, J3 = 3 deg, J4 = 4 deg, J5 = 5 deg, J6 = 6 deg" +
+                                     more + "\n};\n/END\n",
+                                 "m.ls"));
+  };
+  for (const char* unused : {"", ", E1 = 0 mm", ", J7 = .000 deg"}) EXPECT_EQ(joints(unused), "") << unused;
+  for (const char* used : {", E1 = 5 mm", ", J7 = 5 deg", ", J8 = -1 mm", ", J9 = ** deg"})
+    EXPECT_EQ(joints(used), "5 P[1]: external axes are in use\n") << used;
+}
+
+// ---- targets and frames that a RAPID program changes ----
+
+TEST(StatementsRapid, TargetsThatAreChangedStay) {
+  const std::string variable = "VAR robtarget v:=" + rapid_value, two = rapid_value.substr(0, rapid_value.size() - 2);
+  const auto left = [&](const std::string& lines) { return corrected(rapid_lines(lines, variable)); };
+  for (const char* change : {"v.trans.z:=v.trans.z+10;\n", "v:=CRobT();\n", "v.trans:=[1,2,3];\n", "v.rot:=a.rot;\n"}) {
+    EXPECT_EQ(left(rapid_move("a") + change + rapid_move("v")), "abcdj") << change;
+    EXPECT_EQ(left(rapid_move("v") + change), "abcdj") << change;
+  }
+  EXPECT_EQ(corrected(rapid_lines("row{1}:=a;\n" + rapid_move("row{1}"),
+                                  "VAR robtarget row{2}:=[" + two + "," + two + "];\n")),
+            "abcdj");
+  EXPECT_EQ(corrected(rapid_lines("a.trans:=[1,2,3];\n" + rapid_move("a"))), "bcdj");
+  EXPECT_EQ(corrected(rapid_lines("VAR jointtarget k:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
+                                  "k.robax.rax_1:=5;\nMoveAbsJ k,v1,fine,tool0;\n")),
+            "abcdj");
+  // nothing but a move behind it would use a changed constant
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "a.trans:=[1,2,3];\n")), "abcdj");
+}
+
+TEST(StatementsRapid, FunctionsThatWriteArguments) {
+  const std::string frame = "[[1,2,3],[1,0,0,0]]", declared = "VAR robtarget v:=" + rapid_value +
+                                                              "PERS tooldata gun:=[TRUE," + frame +
+                                                              ",[1,[0,0,1],[1,0,0,0],0,0,0]];\n";
+  for (const char* lines :
+       {"ok:=StrToVal(rx,v);\nMoveJ v,v1,fine,tool0;\n", "IF StrToVal(rx,v) MoveJ v,v1,fine,tool0;\n",
+        "WHILE StrToVal(rx,v.trans) DO\nMoveJ v,v1,fine,tool0;\nENDWHILE\n",
+        "WaitUntil GetNextMechUnit(v.trans.x,s);\nMoveJ v,v1,fine,tool0;\n",
+        "f:=DefAccFrame(x,y,3,v.trans.x,n);\nMoveJ v,v1,fine,tool0;\n",
+        "k:=CalcJointT(a,tool0\\ErrorNumber:=v.trans.y);\nMoveJ v,v1,fine,tool0;\n"}) {
+    const RobotProgram program = rapid_lines(lines, declared);
+    EXPECT_EQ(corrected(program), "abcdj") << lines << remarks(program);
+    EXPECT_NE(about(program, "v").find("the function may change it"), std::string::npos) << lines;
+    EXPECT_EQ(program.tools.count("gun"), 1u);
+  }
+  EXPECT_EQ(rapid_lines("ok:=StrToVal(rx,gun);\n", declared).tools.count("gun"), 0u);
+  // what they only read
+  const RobotProgram read = rapid_lines(
+      "k:=CalcJointT(v,gun);\nn:=StrToVal(ValToStr(v),n);\nf:=DefAccFrame(v,a,3,m,n);\nMoveJ v,v1,fine,gun;\n",
+      declared);
+  EXPECT_NE(corrected(read).find('v'), std::string::npos) << remarks(read);
+  EXPECT_EQ(read.tools.count("gun"), 1u);
+}
+
+TEST(StatementsRapid, RoutinesThatMovesCallByName) {
+  const std::string off = "PROC sub()\nPDispSet d;\nENDPROC\n";
+  for (const char* move : {"MoveJSync a,v1,z10,tool0,\"sub\";\n", "MoveLSync a,v1,z10,tool0\\WObj:=w,\"SUB\";\n",
+                           "MoveCSync a,d,v1,z10,tool0,\"sub\";\n"}) {
+    const RobotProgram followed = rapid_lines(move + rapid_line("b"), off);
+    EXPECT_EQ(corrected(followed).find('b'), std::string::npos) << move;
+    EXPECT_NE(about(followed, "b").find("positions are displaced"), std::string::npos) << move;
+    EXPECT_NE(corrected(rapid_lines(move + rapid_line("b"), "PROC sub()\nSetDO x,1;\nENDPROC\n")).find('b'),
+              std::string::npos);
+    const RobotProgram outside = rapid_lines(rapid_move("c") + move + rapid_line("b"));
+    EXPECT_EQ(corrected(outside).find('b'), std::string::npos) << move;
+    EXPECT_NE(corrected(outside).find('c'), std::string::npos) << move;
+    EXPECT_NE(remarks(outside).find("9 Move"), std::string::npos) << move;
+    EXPECT_NE(corrected(rapid_lines(move + rapid_line("b"), "", {"Sub"})).find('b'), std::string::npos) << move;
+  }
+  for (const char* name : {"name", "\"su\"+\"b\"", "\"SetDO\""})
+    EXPECT_EQ(
+        corrected(rapid_lines(message("MoveLSync a,v1,z10,tool0,", name, ";\n") + rapid_line("b"), off)).find('b'),
+        std::string::npos)
+        << name;
+}
+
+TEST(StatementsRapid, ExitCycleGoesBackToMain) {
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "ConfJ\\Off;\nIF n<5 ExitCycle;\n")), "bcdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "ConfJ\\Off;\nConfJ\\On;\nIF n<5 ExitCycle;\n")), "abcdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "sub;\n", "PROC sub()\nConfJ\\Off;\nExitCycle;\nENDPROC\n")),
+            "bcdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "PDispSet d;\nsub;\nPDispOff;\n",
+                                  "PROC sub()\nIF n<5 ExitCycle;\nENDPROC\n")),
+            "bcdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "PDispSet d;\nPDispOff;\nERROR\nExitCycle;\n")), "bcdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "ConfL\\Off;\nIF n<5 ExitCycle;\n")), "abcdj");
+  // of a file without it any routine may be what main calls first
+  const std::string text = "MODULE m\nPROC first()\nMoveJ " + rapid_value.substr(0, rapid_value.size() - 2) +
+                           ",v1,fine,tool0;\nENDPROC\nPROC second()\nConfJ\\Off;\nExitCycle;\nENDPROC\nENDMODULE\n";
+  EXPECT_TRUE(parse_program(rapid, text, "m.mod").targets.empty());
+}
+
+// Variables of routines hide those of the module.
+TEST(StatementsRapid, VariablesOfRoutines) {
+  const std::string use = "MoveL a,v1,fine,tool0;\nENDPROC\n";
+  for (const char* local : {"VAR robtarget a;\nReadBlock dev,1,a;\n", "VAR robtarget a;\na:=CRobT();\n",
+                            "VAR jointtarget a;\nGetJointData 1;\n"}) {
+    const RobotProgram program = rapid_lines(rapid_move("a"), "PROC b()\n" + std::string(local) + use);
+    EXPECT_EQ(corrected(program), "abcdj") << local << remarks(program);
+    EXPECT_EQ(named(program, "a").move, TargetMove::joint) << local;
+    EXPECT_NE(remarks(program).find("MoveL a: a variable without literal value"), std::string::npos) << local;
+  }
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a"), "PROC b(INOUT robtarget a)\na.trans.x:=1;\nENDPROC\n")), "abcdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a"), "PROC b()\nVAR num a;\na:=1;\nENDPROC\n")), "abcdj");
+  const RobotProgram both =
+      rapid_lines(rapid_move("a"), "PROC b()\nVAR robtarget a:=" + rapid_value + "a.trans.x:=1;\n" + use);
+  EXPECT_EQ(corrected(both), "abcdj");
+  EXPECT_EQ(named(both, "a").line, 2u);
+  const std::string gun = "PERS tooldata gun:=[TRUE,[[1,2,3],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];\n";
+  for (const char* local : {"VAR tooldata gun;\n", "VAR tooldata gun:=f();\n",
+                            "VAR tooldata gun:=[FALSE,[[1,2,3],[1,0,0,0]],[1,[0,0,1],[1,0,0,0],0,0,0]];\n"})
+    EXPECT_EQ(rapid_lines(local + std::string("MoveJ a,v1,fine,gun;\n"), gun, {"f"}).tools.count("gun"), 0u) << local;
+}
+
+TEST(StatementsRapid, CarriageReturnsEndLines) {
+  std::string text = "MODULE m\r! targets \"\rCONST robtarget a:=" + rapid_value +
+                     "PROC main()\rConfJ\\Off; ! off\rMoveJ a,v1,fine,tool0;\rNobody;\rENDPROC\rENDMODULE\r";
+  std::replace(text.begin(), text.end(), '\n', '\r');
+  const RobotProgram program = parse_program(rapid, text, "m.mod");
+  EXPECT_EQ(remarks(program),
+            "3 a: line 5, ConfJ\\Off: configurations of joint moves do not count\n"
+            "7 Nobody: what it does to targets is not known\n");
+  EXPECT_EQ(stamped(text, program, {}), "MODULE m\r! VERNIER-CORRECTED:\r" + text.substr(9));
+  // one within a file of other line ends, and pairs
+  EXPECT_NE(remarks(rapid_lines("! x\rNobody;\n")).find("9 Nobody"), std::string::npos);
+  EXPECT_EQ(about(rapid_lines("! x\r\nConfJ\\Off;\r\n" + rapid_move("a")), "a").find("line 9, "), 0u);
 }
 
 // ---- how far ----

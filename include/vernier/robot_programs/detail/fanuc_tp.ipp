@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <map>
@@ -19,8 +20,11 @@ namespace vernier::detail {
 /// Reads the positions of a Fanuc teach pendant program in its text form.
 class FanucReader final : private StatementReader {
  public:
-  FanucReader(const ProgramText& from, RobotProgram& to, const StatementTable& table)
-      : StatementReader(from, to, table) {}
+  FanucReader(const ProgramText& from, RobotProgram& to, const StatementTable& table,
+              const std::vector<std::string>& assumed)
+      : StatementReader(from, to, table) {
+    for (const std::string& name : assumed) assumed_.insert(lower_case(name));
+  }
 
   void read() {
     program_.tools["0"] = program_.workobjects["0"] = Isometry3::Identity();
@@ -34,11 +38,14 @@ class FanucReader final : private StatementReader {
     if (last != std::string_view::npos)
       instructions(text_.text.substr(first, last - first), text_.tokens[moves].line + 1);
     std::vector<bool> keep(program_.targets.size(), true);
+    for (const std::size_t k : displaced_)  // for moves that add a register to it, a literal is no target
+      if (plain_.count(k) == 0) relative_.insert(k);
     for (ProgramStep& step : steps_)
       if (step.target && relative_.count(*step.target) != 0) step.target.reset();
     for (const std::size_t k : relative_) keep[k] = false;
     solve();
     for (ProgramStep& step : steps_) compare_frames(step);
+    for (const std::size_t k : changed_) program_.targets[k].numbers.clear();
     use_targets(text_, steps_, keep, program_);
   }
 
@@ -102,20 +109,17 @@ class FanucReader final : private StatementReader {
       if (key.size() == 2 && key[0] == 'j') {
         joints = true;
         const std::size_t c = static_cast<std::size_t>(key[1]) - '1';
+        if (key[1] > '6') external = external || !is_zero(k + 2);
         if (c < 6) {
           angles[c] = signed_number(text_, k + 2, next, range);
           if (word(next) != "deg") angles[c].reset();
           angle_ranges[c] = range;
         }
       }
-      if (key.size() == 2 && key[0] == 'e') {
-        const std::optional<double> axis = signed_number(text_, k + 2, next, range);
-        external = external || !axis || !same_value(*axis, 0);
-      }
+      if (key.size() == 2 && key[0] == 'e') external = external || !is_zero(k + 2);
     }
     if (!group) return refuse("no group 1");
     if (other_group) return refuse("a second motion group");
-    if (external) return refuse("external axes are in use");
     Vector6 v;
     for (std::size_t c = 0; c < 6; ++c) {
       const std::optional<double>& value = joints ? angles[c] : values[c];
@@ -123,6 +127,7 @@ class FanucReader final : private StatementReader {
       v(static_cast<Index>(c)) = *value;
       out.numbers.push_back(joints ? angle_ranges[c] : ranges[c]);
     }
+    if (external) return refuse("external axes are in use");
     if (joints) {
       out.kind = TargetKind::joints;
       out.joints = v * (std::numbers::pi / 180);
@@ -141,6 +146,14 @@ class FanucReader final : private StatementReader {
     known_[name] = program_.targets.size();
     program_.targets.push_back(std::move(out));
     return close;
+  }
+
+  // whether an axis beyond the sixth, whose value is at token i, stands still at zero
+  bool is_zero(std::size_t i) const {
+    std::size_t next = i;
+    ByteRange range{0, 0};
+    const std::optional<double> axis = signed_number(text_, i, next, range);
+    return axis && same_value(*axis, 0);
   }
 
   // 'N U T, 0, 0, 0'
@@ -234,10 +247,10 @@ class FanucReader final : private StatementReader {
       std::string_view rest = text.substr(name.size());
       while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
       if (text[0] == '!' || text.starts_with("//") || text.starts_with("--")) break;  // a remark
-      const bool conditional = (name == "if" && !lower_case(rest).ends_with("then")) || name == "select" ||
-                               text[0] == '=' || (name == "else" && !rest.empty());
+      const std::size_t comma = behind_condition(text);
+      const bool conditional = ((name == "if" || name == "select") && is_condition(rest) && comma < text.size()) ||
+                               text[0] == '=' || (name == "else" && rest.starts_with(','));
       if (conditional) {
-        const std::size_t comma = behind_condition(text);
         text = comma == std::string_view::npos ? std::string_view() : text.substr(comma + 1);
         while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
         flow_.open(false);
@@ -271,25 +284,27 @@ class FanucReader final : private StatementReader {
   }
 
   void instruction(std::string_view text, const std::string& name, std::string_view rest, std::size_t line) {
-    const std::string what = excerpt(text);
+    const std::string what = excerpt(text), form = form_of(rest);
+    const bool alone = rest.empty();
     if (is_motion(text)) {
       motion(text, line);
-    } else if (name == "if") {
+    } else if (name == "if" && is_condition(rest) && form.ends_with("then")) {
       flow_.open(false);
-    } else if (name == "for") {
+    } else if (name == "for" && is_condition(rest)) {
       flow_.open(true);
-    } else if (name == "else") {
+    } else if (name == "else" && alone) {
       flow_.branch();
-    } else if (name == "endif" || name == "endfor") {
+    } else if ((name == "endif" || name == "endfor") && alone) {
       flow_.close();
-    } else if (name == "lbl") {
+    } else if (name == "lbl" && rest.starts_with('[')) {
       flow_.label(number_in(text));
-    } else if (name == "jmp") {
+    } else if (name == "jmp" && form == "lbl[]") {
       jump(text);
-    } else if (name == "end" || name == "abort") {
+    } else if ((name == "end" || name == "abort") && alone) {
       flow_.leave_routine();
-    } else if (name == "call" || name == "run" || name == "monitor") {
-      call(line, first_word(rest), what);
+    } else if ((name == "call" || name == "run" || name == "monitor") && !form.starts_with("end ")) {
+      call(line, form, what);
+      jump(text);  // of another branch of SELECT
     } else if ((name == "uframe_num" || name == "utool_num") && rest.starts_with('=')) {
       rest.remove_prefix(1);
       while (!rest.empty() && is_blank(rest.front())) rest.remove_prefix(1);
@@ -299,12 +314,93 @@ class FanucReader final : private StatementReader {
       else
         flow_.set(state, {std::string(rest), {}, line});
     } else if (name == "p" && rest.starts_with('[')) {
-      if (known_.count("P[" + number_in(text) + "]") != 0 ||
-          number_in(text).find_first_not_of("0123456789") != std::string::npos)
-        remark(line, what, "the program changes this target");
+      change(line, number_in(text), what);
     } else {
-      if (name == "wait") jump(text);
-      apply(line, name, first_word(rest), what);
+      apply_form(line, name, form, what);
+      jump(text);
+    }
+  }
+
+  // What stands behind the first word as tables have it: in lower case, brackets and quotes empty, single blanks.
+  static std::string form_of(std::string_view rest) {
+    std::string out;
+    char quote = 0;
+    std::size_t depth = 0;
+    for (const char c : lower_case(rest)) {
+      if (quote != 0 || (depth > 0 && c != '[' && c != ']')) {
+        if (c == quote) {
+          out += '\'';
+          quote = 0;
+        }
+        continue;
+      }
+      if (c == ']' && depth > 0) --depth;
+      const bool blank = is_blank(c);
+      if (c == '\'' || c == '"') {
+        out += '\'';
+        quote = c;
+      } else if (depth == 0 && !(blank && (out.empty() || out.back() == ' '))) {
+        out += blank ? ' ' : c;
+      }
+      if (c == '[') ++depth;
+    }
+    while (out.ends_with(' ')) out.pop_back();
+    return out;
+  }
+
+  // whether a text begins as conditions do: R[1]=, !DI[1], (..), $X=
+  static bool is_condition(std::string_view text) {
+    if (text.empty() || text[0] == '(' || text[0] == '!' || text[0] == '$') return !text.empty();
+    std::size_t end = first_word(text).size();
+    if (end == 0) return false;
+    while (end < text.size() && is_blank(text[end])) ++end;
+    return end < text.size() && std::string_view("[=<>").find(text[end]) != std::string_view::npos;
+  }
+
+  // whether a rest has the form of a row
+  static bool fits(std::string_view row, std::string_view form) {
+    while (!row.empty()) {
+      if (row == "..") return true;
+      if (row == "?") return is_condition(form);
+      if (row[0] == '#') {
+        std::size_t end = (std::min)(form.find_first_not_of("0123456789."), form.size());
+        if (form.starts_with("r[]")) end = 3;
+        if (form.starts_with("ar[]")) end = 4;
+        if (end == 0) return false;
+        form.remove_prefix(end);
+      } else {
+        if (form.empty() || form[0] != row[0]) return false;
+        form.remove_prefix(1);
+      }
+      row.remove_prefix(1);
+    }
+    return form.empty();
+  }
+
+  // Another rest than that of a row makes the name of a macro.
+  void apply_form(std::size_t line, const std::string& name, const std::string& form, const std::string& what) {
+    static const auto words = words_of(fanuc_harmless);
+    const bool written = form.starts_with('[') || form.starts_with('=');
+    std::string option = form.empty() || written ? "" : " ";
+    for (const ProgramStatement& row : fanuc_statements)
+      if (row.name == name && row.option != "*" && fits(row.option, form)) option = row.option;
+    if (words.count(name) == 0 || written || assumed_.count(name) != 0)
+      apply(line, name, option, what);
+    else
+      unknown(line, what);
+  }
+
+  // P[n]=, P[n,m]=, P[R[n]]=: the literal stays as it is
+  void change(std::size_t line, const std::string& number, const std::string& what) {
+    const std::string digits = number.substr(0, (std::min)(number.find_first_not_of("0123456789"), number.size()));
+    if (const auto found = known_.find("P[" + digits + "]"); found != known_.end()) {
+      remark(line, what, "the program changes this target");
+      if (found->second != none) changed_.insert(found->second);
+    } else if (digits.empty()) {
+      remark(line, what, "the program changes this target");
+      for (const auto& [name, k] : known_)
+        if (k != none && changed_.insert(k).second)
+          remark(program_.targets[k].line, name, message("line ", line, ", ", what, ": the program may change it"));
     }
   }
 
@@ -316,11 +412,15 @@ class FanucReader final : private StatementReader {
     flow_.jump(number.find_first_not_of("0123456789") == std::string::npos ? number : std::string());
   }
 
-  void call(std::size_t line, const std::string& name, const std::string& what) {
-    if (statements_.find(name).kind == StatementClass::harmless)
+  // Tables have no names of routines. Which one CALL SR[n] means is not known.
+  bool call(std::size_t line, std::string_view form, const std::string& what) {
+    const std::string name = first_word(form);
+    const bool harmless = assumed_.count(name) != 0 && !form.substr(name.size()).starts_with('[');
+    if (harmless)
       break_order();
     else
       unknown(line, what);
+    return harmless;
   }
 
   static bool is_motion(std::string_view text) {
@@ -369,7 +469,10 @@ class FanucReader final : private StatementReader {
       options = close;
     }
     const std::string rest = lower_case(text.substr((std::min)(options, text.size())));
-    if (rest.find("offset") != std::string::npos) listed("an offset that a register adds");
+    const bool displaced = rest.find("offset") != std::string::npos;
+    if (displaced) listed("an offset that a register adds");
+    for (std::size_t s = first_step; s < steps_.size(); ++s)
+      if (steps_[s].target) (displaced ? displaced_ : plain_).insert(*steps_[s].target);
     const std::string increment = " inc";  // not the beginning of a longer word
     std::size_t at = rest.find(increment);
     while (at != std::string::npos && at + increment.size() < rest.size() &&
@@ -386,6 +489,7 @@ class FanucReader final : private StatementReader {
   // Options behind the speed. Of those that are not known nobody knows where the move ends.
   void further_options(const std::string& rest, std::size_t first_step, std::size_t line, std::string_view text) {
     static const auto options = words_of(fanuc_move_options);
+    const std::size_t last_step = steps_.size();
     for (std::size_t i = 0; i < rest.size();) {
       if (!is_word_character(rest[i]) || (rest[i] >= '0' && rest[i] <= '9')) {
         ++i;
@@ -397,17 +501,23 @@ class FanucReader final : private StatementReader {
       i = end;
       if (option == "call") {
         while (i < rest.size() && is_blank(rest[i])) ++i;
-        const std::string routine = first_word(std::string_view(rest).substr(i));
-        i += routine.size();
-        call(line, routine, excerpt(text));
+        const std::string_view routine = std::string_view(rest).substr(i);
+        if (!call(line, routine, excerpt(text)))  // it may run before the move ends
+          refuse_steps(first_step, last_step,
+                       message("line ", line, ", ", excerpt(text), ": ", reason_of(ProgramState::everything)));
+        i += first_word(routine).size();
         continue;
       }
       while (!option.empty() && option.back() >= '0' && option.back() <= '9') option.pop_back();
       if (options.count(option) != 0 || option == "inc" || option.find("offset") != std::string::npos) continue;
-      for (std::size_t s = first_step; s < steps_.size(); ++s)
-        if (steps_[s].unknown.empty())
-          steps_[s].unknown = message("line ", line, ", ", excerpt(text), ": ", option, " is no option that is known");
+      refuse_steps(first_step, last_step,
+                   message("line ", line, ", ", excerpt(text), ": ", option, " is no option that is known"));
     }
+  }
+
+  void refuse_steps(std::size_t first, std::size_t last, const std::string& why) {
+    for (std::size_t s = first; s < last; ++s)
+      if (steps_[s].unknown.empty()) steps_[s].unknown = why;
   }
 
   // A position states its tool and frame. The controller refuses others, or takes them without a word.
@@ -429,15 +539,18 @@ class FanucReader final : private StatementReader {
     step.target.reset();
   }
 
-  std::map<std::string, std::size_t> known_{};  // index of its target
-  std::set<std::size_t> relative_{};
-  int opened_ = 0;  // conditions in one instruction
+  std::map<std::string, std::size_t> known_{};   // index of its target
+  std::set<std::size_t> relative_{};             // targets of relative moves
+  std::set<std::size_t> displaced_{}, plain_{};  // targets of moves that add an offset, and of others
+  std::set<std::size_t> changed_{};              // targets that instructions change
+  std::set<std::string> assumed_{};              // harmless names that users state
+  int opened_ = 0;                               // conditions in one instruction
 };
 
 VERNIER_IMPL void read_fanuc_tp(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,
                                 RobotProgram& program) {
   const ProgramText tokens = ProgramText::of(text, name, {.comments = "", .quotes = "\"'"});
-  FanucReader(tokens, program, StatementTable(fanuc_harmless, fanuc_statements, assumed)).read();
+  FanucReader(tokens, program, StatementTable(fanuc_harmless, fanuc_statements, assumed), assumed).read();
 }
 
 }  // namespace vernier::detail

@@ -10,24 +10,64 @@
 
 namespace vernier::detail {
 
-/// First words, of assignments the names of what they change.
+/// Words in front of [ or =, of assignments the names of what they change. Another word behind them makes the name of a
+/// macro: GO HOME.
 inline constexpr std::string_view fanuc_harmless =
     "r pr sr ar ai ao di do f fi gi go m plm ri ro si so ui uo wi wo wsi wso timer timer_overflow override ualm "
-    "message wait pause abort end rsr lock unlock joint_max_speed linear_max_speed payload error_prog resume_prog "
-    "maint_prog clear_resume_prog return_path_dsbl col arc weld weave vr strlen findstr substr vision $waittmout "
-    "$waitrelmt $mcr.$genoverride";
+    "message rsr joint_max_speed linear_max_speed payload error_prog resume_prog maint_prog vr $waittmout $waitrelmt "
+    "$mcr.$genoverride";
 
-/// Other instructions.
+/// Other instructions. Harmless ones have exactly this rest: `#` is a number or register, `?` a condition, `..`
+/// anything; what stands in brackets and quotes is left out.
 inline constexpr ProgramStatement fanuc_statements[] = {
-    {"skip", "condition", StatementClass::harmless},
-    {"offset", "condition", StatementClass::harmless},
-    {"tool_offset", "condition", StatementClass::harmless},
-    {"voffset", "condition", StatementClass::harmless},
+    {"wait", "#(sec)", StatementClass::harmless},
+    {"wait", "?", StatementClass::harmless},
+    {"pause", "", StatementClass::harmless},
+    {"abort", "", StatementClass::harmless},
+    {"end", "", StatementClass::harmless},
+    {"monitor", "end ..", StatementClass::harmless},
+    {"lock", "preg", StatementClass::harmless},
+    {"unlock", "preg", StatementClass::harmless},
+    {"lock", "vreg", StatementClass::harmless},
+    {"unlock", "vreg", StatementClass::harmless},
+    {"clear_resume_prog", "", StatementClass::harmless},
+    {"return_path_dsbl", "", StatementClass::harmless},
+    {"col", "detect on", StatementClass::harmless},
+    {"col", "detect off", StatementClass::harmless},
+    {"col", "guard adjust", StatementClass::harmless},
+    {"col", "guard adjust #", StatementClass::harmless},
+    {"col", "guard adjust #%", StatementClass::harmless},
+    {"arc", "start[]", StatementClass::harmless},
+    {"arc", "start e#[]", StatementClass::harmless},
+    {"arc", "end[]", StatementClass::harmless},
+    {"arc", "end e#[]", StatementClass::harmless},
+    {"weld", "start[]", StatementClass::harmless},
+    {"weld", "start e#[]", StatementClass::harmless},
+    {"weld", "end[]", StatementClass::harmless},
+    {"weld", "end e#[]", StatementClass::harmless},
+    {"weave", "sine[]", StatementClass::harmless},
+    {"weave", "sine #[]", StatementClass::harmless},
+    {"weave", "circle[]", StatementClass::harmless},
+    {"weave", "figure 8[]", StatementClass::harmless},
+    {"weave", "l[]", StatementClass::harmless},
+    {"weave", "end", StatementClass::harmless},
+    {"weave", "end[]", StatementClass::harmless},
+    {"vision", "run_find ''..", StatementClass::harmless},
+    {"vision", "get_offset ''..", StatementClass::harmless},
+    {"vision", "get_nfound ''..", StatementClass::harmless},
+    {"vision", "get_passfail ''..", StatementClass::harmless},
+    {"vision", "get_reading ''..", StatementClass::harmless},
+    {"vision", "set_reference ''..", StatementClass::harmless},
+    {"vision", "override ''..", StatementClass::harmless},
+    {"skip", "condition ?", StatementClass::harmless},
+    {"offset", "condition pr[]..", StatementClass::harmless},
+    {"tool_offset", "condition pr[]..", StatementClass::harmless},
+    {"voffset", "condition vr[]..", StatementClass::harmless},
     {"uframe", "", StatementClass::voids, ProgramState::frame_data},
     {"utool", "", StatementClass::voids, ProgramState::frame_data},
     {"softfloat", "end", StatementClass::ends, ProgramState::following},
     {"softfloat", "", StatementClass::voids, ProgramState::following},
-    {"touch", "offset", StatementClass::voids, ProgramState::displacement},
+    {"touch", "offset ..", StatementClass::voids, ProgramState::displacement},
     {"track", "*", StatementClass::voids, ProgramState::everything},
     {"line", "*", StatementClass::voids, ProgramState::everything},
     {"stop_tracking", "*", StatementClass::voids, ProgramState::everything},

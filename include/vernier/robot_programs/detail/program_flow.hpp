@@ -61,6 +61,9 @@ class ProgramFlow {
   void label(const std::string& name) { add({Kind::label, {}, name, 0}); }     ///< a label stands here
   void jump(const std::string& name) { add({Kind::jump, {}, name, 0}); }       ///< to a label; empty: to any
   void call(const std::string& name) { add({Kind::call, {}, name, 0}); }       ///< of a routine of this program
+  /// The program may begin anew, with the states that it has set: at this routine, or where the file does not have it,
+  /// at any that nothing calls.
+  void restart(const std::string& name) { restart_ = name; }
   /// A state has a value from here on.
   VERNIER_API void set(ProgramState state, const StateValue& value);
   /// Data of this name, which are no state, are set here.
@@ -147,6 +150,7 @@ class ProgramFlow {
   std::vector<std::size_t> finished_{};  // routines, callees first
   State beginning_{}, any_time_{};
   int unfollowed_ = none;  // the value after a call that is not followed
+  std::string restart_{};  // the routine at which the program may begin anew; empty: it does not
 };
 
 }  // namespace vernier::detail

@@ -236,9 +236,12 @@ VERNIER_IMPL void ProgramFlow::solve() {
     join(anywhere, values_only(routine.touched));
     if (routine.any_time) join(any_time_, values_only(routine.touched));
   }
+  const auto restart = by_name_.find(restart_);
+  const int first = restart == by_name_.end() ? several : restart->second;
   for (std::size_t k = finished_.size(); k-- > 0;) {  // callers first
     Routine& routine = routines_[finished_[k]];
-    if (routine.any_time) routine.entry = anywhere;
+    const bool anew = first == several ? !routine.called : first == static_cast<int>(finished_[k]);
+    if (routine.any_time || (anew && !restart_.empty())) routine.entry = anywhere;
     if (!routine.called) join(routine.entry, beginning_);
     if (routine.recursive) {
       join(routine.entry, anywhere);

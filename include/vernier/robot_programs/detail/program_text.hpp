@@ -115,6 +115,7 @@ VERNIER_API void place(const ProgramText& text, std::size_t byte, std::size_t li
 /// Gives targets what the moves say about them and sorts them by first use.
 /// @param steps     moves in order
 /// @param keep      of each target: whether it is one even where no move uses it
+/// @param program   a target without ranges of numbers stays as it is; its reader has listed it
 VERNIER_API void use_targets(const ProgramText& text, const std::vector<ProgramStep>& steps,
                              const std::vector<bool>& keep, RobotProgram& program);
 

@@ -240,7 +240,7 @@ VERNIER_IMPL void use_targets(const ProgramText& text, const std::vector<Program
   }
   std::vector<std::size_t> order, index(targets.size(), never);
   for (std::size_t k = 0; k < targets.size(); ++k) {
-    if (refused[k]) continue;
+    if (refused[k] || targets[k].numbers.empty()) continue;
     if (uses[k] == 0 && !keep[k]) {
       program.uncorrected.push_back({targets[k].line, excerpt(targets[k].name), "no move of this file uses it"});
       continue;

@@ -20,26 +20,26 @@ namespace vernier::detail {
 /// Reads the targets of a RAPID module. Line ends are no tokens here.
 class RapidReader final : private StatementReader {
  public:
-  RapidReader(const ProgramText& from, RobotProgram& to, const StatementTable& table)
-      : StatementReader(from, to, table) {}
+  RapidReader(const ProgramText& from, RobotProgram& to, const StatementTable& table,
+              const std::vector<std::string>& assumed)
+      : StatementReader(from, to, table) {
+    for (const std::string& name : assumed) assumed_.insert(lower_case(name));
+  }
 
   void read() {
     std::size_t i = find_module();
     program_.tools["tool0"] = program_.workobjects["wobj0"] = Isometry3::Identity();
     find_routines();
     while (i < text_.tokens.size()) i = statement(i);
-    for (const auto& [line, expression] : changes_) {
-      const std::string name = lower_case(text_.at(expression.first));
-      assigned_.insert(name);
-      if (names_.count(name) != 0)
-        remark(line, excerpt(text_, expression.first, expression.second), "the program changes this target");
-    }
-    for (const std::string& name : assigned_) {  // frames that the program changes are not those that it states
-      if (constants_.count(name) != 0) continue;
+    for (const Change& change : changes_) assigned_.insert(word(change.expression.first));
+    for (const std::string& name : assigned_)  // frames that the program changes are not those that it states
+      if (constant_names_.count(name) == 0 || variable_names_.count(name) != 0) unstated_.insert(name);
+    for (const std::string& name : unstated_) {
       program_.tools.erase(name);
       program_.workobjects.erase(name);
     }
     for (const Move& move : moves_) use(move);
+    for (const Change& change : changes_) changed(change);
     solve();
     use_targets(text_, steps_, std::vector<bool>(program_.targets.size(), true), program_);
   }
@@ -57,6 +57,12 @@ class RapidReader final : private StatementReader {
     bool parameter = false;  // whether its target is a parameter of the routine
     bool moves = true;       // whether it is a move
     bool constants = true;   // whether it concerns targets that no statement can change
+    std::size_t routine = 0;
+  };
+  struct Change {  // of a variable
+    std::size_t line;
+    Span expression;
+    std::string variable;  // scoped
   };
 
   void break_order() override { moves_.push_back({}); }
@@ -66,8 +72,9 @@ class RapidReader final : private StatementReader {
     for (std::size_t i = 0; i + 1 < text_.tokens.size(); ++i) {
       if (word(i) != "module" || !text_.is_word(i + 1)) continue;
       const std::size_t k = behind_brackets(text_, i + 2, text_.tokens.size());
-      const std::size_t line_end = text_.text.find('\n', text_.tokens[k - 1].end);
+      const std::size_t line_end = text_.text.find_first_of("\r\n", text_.tokens[k - 1].end);
       program_.stamp_at = line_end == std::string_view::npos ? text_.text.size() : line_end + 1;
+      if (text_.text.substr((std::min)(line_end, text_.text.size())).starts_with("\r\n")) ++program_.stamp_at;
       return k;
     }
     throw DataError(message(text_.name, ": no MODULE, so this is no RAPID program"));
@@ -83,6 +90,25 @@ class RapidReader final : private StatementReader {
       for (i = name; i + 1 < end; ++i) changes = changes || word(i) == "inout" || word(i) == "var" || word(i) == "pers";
       routines_[word(name)] = changes;
     }
+    for (std::size_t i = 0; i + 1 < text_.tokens.size(); ++i)
+      if (has_routine(word(i)))
+        for (std::size_t k = i, end = until(i, ';'); k < end; ++k)
+          if (text_.tokens[k].kind == ProgramToken::Kind::text) called_by_text_.insert(quoted(k));
+  }
+
+  // MoveJSync, MoveLSync and MoveCSync, whose last argument names a routine
+  static bool has_routine(std::string_view move) { return move.starts_with("move") && move.ends_with("sync"); }
+
+  // a text without its quotes, in lower case
+  std::string quoted(std::size_t i) const {
+    std::string out = lower_case(text_.at(i).substr(1));
+    if (out.ends_with('"')) out.pop_back();
+    return out;
+  }
+
+  // A variable of a routine hides that of the module.
+  std::string scoped(const std::string& name, std::size_t routine) const {
+    return locals_[routine].count(name) != 0 ? message(name, '@', routine) : name;
   }
 
   // the token behind the name of a routine and its parameters
@@ -147,11 +173,14 @@ class RapidReader final : private StatementReader {
     if (name == "endproc" || name == "endfunc" || name == "endtrap") {
       flow_.end();
       parameters_.clear();
+      routine_ = 0;
+      in_main_ = false;
       return i + 1;
     }
     if (name == "error" || name == "undo" || name == "backward") {  // a handler may run whatever happened before
       flow_.end();
       flow_.begin(message(name, " of line ", line(i)), true);
+      in_main_ = false;
       break_order();
       return behind_brackets(text_, i + 1, text_.tokens.size());
     }
@@ -199,11 +228,18 @@ class RapidReader final : private StatementReader {
       return i + 2;
     }
     if (name == "return" || name == "raise" || name == "retry" || name == "trynext" || name == "exit" ||
-        name == "exitcycle" || name == "raisetouser" || name == "errraise") {
+        name == "raisetouser" || name == "errraise") {
       const std::size_t end = until(i, ';');
       calls(i + 1, end);
       flow_.leave_routine();
       return end;
+    }
+    if (name == "exitcycle") {  // main begins anew, with all settings
+      if (in_main_)
+        flow_.jump(main_begins);
+      else
+        flow_.restart("main");
+      return until(i, ';');
     }
     return i;
   }
@@ -211,12 +247,16 @@ class RapidReader final : private StatementReader {
   // PROC name(type parameter, ..)
   std::size_t routine(std::size_t i, const std::string& kind) {
     const std::size_t name = (std::min)(kind == "func" ? i + 2 : i + 1, text_.tokens.size() - 1);
-    flow_.begin(word(name), kind == "trap");
+    flow_.begin(word(name), kind == "trap" || called_by_text_.count(word(name)) != 0);
+    in_main_ = word(name) == "main";
+    if (in_main_) flow_.label(main_begins);
     break_order();
     parameters_.clear();
     const std::size_t end = behind_parameters(name);
     for (std::size_t k = name + 1; k + 1 < end; ++k)
       if (text_.is_word(k) && !text_.is_word(k + 1)) parameters_.insert(word(k));
+    routine_ = locals_.size();
+    locals_.push_back(parameters_);
     return end;
   }
 
@@ -247,7 +287,7 @@ class RapidReader final : private StatementReader {
       assigned_.insert(name);
       literal(k + 2, name);
     } else {
-      changes_.push_back({line(i), {i, end}});
+      changes_.push_back({line(i), {i, end}, scoped(name, routine_)});
     }
     calls(k + 2, end);
   }
@@ -290,6 +330,7 @@ class RapidReader final : private StatementReader {
     Move found;
     found.token = i;
     found.moves = false;
+    found.routine = routine_;
     found.constants = constants;
     found.unknown = why;
     for (std::size_t k = i + 1; k < end;) {
@@ -315,6 +356,36 @@ class RapidReader final : private StatementReader {
         arguments(k, end, message("line ", line(k), ", ", excerpt(text_, k, end), ": the routine may change it"));
       } else if (statements_.find(name).kind != StatementClass::harmless) {
         unknown(line(k), excerpt(text_, k, (std::min)(behind_brackets(text_, k + 1, last), last)));
+      } else {
+        written(k, (std::min)(behind_brackets(text_, k + 1, last), last));
+      }
+    }
+  }
+
+  // what the function at token i writes of its arguments
+  void written(std::size_t i, std::size_t end) {
+    static const auto options = words_of(rapid_writing_options);
+    const std::string name = word(i), why = message("line ", line(i), ", ", excerpt(text_, i, end));
+    const auto* const row =
+        std::find_if(std::begin(rapid_writers), std::end(rapid_writers), [&](const auto& r) { return r.name == name; });
+    const std::size_t first = row == std::end(rapid_writers) ? static_cast<std::size_t>(-1) : row->first;
+    std::size_t number = 1, depth = 0;
+    bool any = false;  // whether this argument is more than an option
+    std::string option;
+    for (std::size_t k = i + 2; k + 1 < end; ++k) {
+      if (text_.is(k, '(') || text_.is(k, '[') || text_.is(k, '{')) ++depth;
+      if ((text_.is(k, ')') || text_.is(k, ']') || text_.is(k, '}')) && depth > 0) --depth;
+      if (depth == 0 && text_.is(k, ',')) {
+        number += any ? 1 : 0;
+        any = false;
+        option.clear();
+      } else if (depth == 0 && text_.is(k, '\\')) {
+        option = word(++k);
+      } else {
+        any = any || option.empty();
+        if (!text_.is_word(k) || !(option.empty() ? number >= first : options.count(option) != 0)) continue;
+        change(k, k + 1);
+        arguments(k - 1, k + 1, why + ": the function may change it", false);
       }
     }
   }
@@ -330,7 +401,13 @@ class RapidReader final : private StatementReader {
     const std::string type = word(i + 1);
     if (!text_.is_word(i + 2)) return i + 1;
     const std::string name = word(i + 2);
-    if (word(i) == "const") constants_.insert(name);
+    if (routine_ > 0) locals_[routine_].insert(name);
+    if (word(i) == "const") {
+      constants_.insert(scoped(name, routine_));
+      constant_names_.insert(name);
+    } else {
+      variable_names_.insert(name);
+    }
     std::size_t k = i + 3;
     if (text_.is(k, '{')) k = behind_brackets(text_, k, text_.tokens.size());
     const bool value = text_.is(k, ':') && text_.is(k + 1, '=');
@@ -338,7 +415,7 @@ class RapidReader final : private StatementReader {
     const bool brackets = value && text_.is(k, '[');
     const std::size_t line = text_.tokens[i].line;
     if (type == "robtarget" || type == "jointtarget") {
-      names_.try_emplace(name);
+      names_.try_emplace(scoped(name, routine_));
       if (brackets) {
         const std::size_t before = program_.targets.size();
         const std::size_t end = literal(k, name);
@@ -354,11 +431,15 @@ class RapidReader final : private StatementReader {
       }
       return k;
     }
-    if (!brackets) return k;
+    if (type == "extjoint") unused_axes_.erase(name);
+    if (!brackets) {
+      if (type == "tooldata" || type == "wobjdata") unstated_.insert(name);
+      return k;
+    }
     if (type == "tooldata" || type == "wobjdata" || type == "extjoint" || type == "confdata") {
       const BracketValue data = read_brackets(text_, k, ';');
-      if (type == "tooldata") tool(name, data);
-      if (type == "wobjdata") workobject(name, data);
+      if ((type == "tooldata" && !tool(name, data)) || (type == "wobjdata" && !workobject(name, data)))
+        unstated_.insert(name);
       if (type == "extjoint" && unused(data)) unused_axes_.insert(name);
       return k;
     }
@@ -379,22 +460,25 @@ class RapidReader final : private StatementReader {
   }
 
   // a tool that the robot holds: [TRUE,[[x,y,z],[q]],load]
-  void tool(const std::string& name, const BracketValue& data) {
-    if (data.values.size() != 3 || !flag(data.values[0], "true")) return;
-    if (const auto found = frame(data.values[1])) state(program_.tools, name, *found);
+  bool tool(const std::string& name, const BracketValue& data) {
+    if (data.values.size() != 3 || !flag(data.values[0], "true")) return false;
+    const auto found = frame(data.values[1]);
+    if (found) state(program_.tools, name, *found);
+    return found.has_value();
   }
 
   // a work object that stands still: [FALSE,TRUE,"",uframe,oframe]
-  void workobject(const std::string& name, const BracketValue& data) {
-    if (data.values.size() != 5 || !flag(data.values[0], "false") || !flag(data.values[1], "true")) return;
+  bool workobject(const std::string& name, const BracketValue& data) {
+    if (data.values.size() != 5 || !flag(data.values[0], "false") || !flag(data.values[1], "true")) return false;
     const auto user = frame(data.values[3]), object = frame(data.values[4]);
     if (user && object) state(program_.workobjects, name, *user * *object);
+    return user && object;
   }
 
   // of a name that is declared twice nobody knows which frame is meant
   void state(std::map<std::string, Isometry3>& frames, const std::string& name, const Isometry3& frame) {
     const auto [found, added] = frames.try_emplace(name, frame);
-    if (!added && !found->second.isApprox(frame, 0)) assigned_.insert(name);
+    if (!added && !found->second.isApprox(frame, 0)) unstated_.insert(name);
   }
 
   bool unused(const BracketValue& axes) const {
@@ -456,7 +540,7 @@ class RapidReader final : private StatementReader {
         }
     }
     if (!name.empty())
-      names_[name].push_back(program_.targets.size());
+      names_[scoped(name, routine_)].push_back(program_.targets.size());
     else
       inline_[value.token] = program_.targets.size();
     program_.targets.push_back(std::move(target));
@@ -503,8 +587,29 @@ class RapidReader final : private StatementReader {
       found.parameter = found.parameter || parameters_.count(word(found.arguments[a].first)) != 0;
     calls(i + 1, k);
     found.point = flow_.point();
+    found.routine = routine_;
+    const bool followed = !has_routine(word(i)) || is_followed(found);
     moves_.push_back(std::move(found));
+    if (!followed) unknown(line(i), excerpt(text_, i, k));
     return k;
+  }
+
+  // whether the routine that a move calls is of this file, or harmless
+  bool is_followed(const Move& move) const {
+    if (move.arguments.size() < targets_of(word(move.token)) + 4) return false;
+    const Span at = move.arguments.back();
+    if (at.second != at.first + 1 || text_.tokens[at.first].kind != ProgramToken::Kind::text) return false;
+    return routines_.count(quoted(at.first)) != 0 || assumed_.count(quoted(at.first)) != 0;
+  }
+
+  // A target that the program changes stays as it is. Constants cannot change, unless a move behind would use that.
+  void changed(const Change& change) {
+    const auto found = names_.find(change.variable);
+    if (found == names_.end()) return;
+    remark(change.line, excerpt(text_, change.expression.first, change.expression.second),
+           "the program changes this target");
+    if (constants_.count(change.variable) != 0 && last_use_[change.variable] < change.expression.first) return;
+    for (const std::size_t k : found->second) program_.targets[k].numbers.clear();
   }
 
   static std::size_t targets_of(const std::string& move) {
@@ -543,11 +648,13 @@ class RapidReader final : private StatementReader {
         add_step(steps_, step);
         continue;
       }
-      const auto declared = names_.find(word(first));
+      const std::string variable = scoped(word(first), move.routine);
+      const auto declared = names_.find(variable);
       const bool element = text_.is(first + 1, '{');
       const std::size_t end = !move.moves ? last : element ? behind_brackets(text_, first + 1, last) : first + 1;
       if (text_.is_word(first) && end == last && declared != names_.end() && !declared->second.empty() &&
-          !move.parameter && (move.constants || constants_.count(word(first)) == 0)) {
+          !move.parameter && (move.constants || constants_.count(variable) == 0)) {
+        last_use_[variable] = (std::max)(last_use_[variable], move.token);
         step.element = declared->second.size() > 1;
         for (const std::size_t k : declared->second) {
           step.target = k;
@@ -566,13 +673,22 @@ class RapidReader final : private StatementReader {
     }
   }
 
-  std::map<std::string, std::vector<std::size_t>> names_{};  // targets of each variable
+  std::map<std::string, std::vector<std::size_t>> names_{};  // targets of each variable, scoped
   std::map<std::size_t, std::size_t> inline_{};              // target by its first token
   std::set<std::string> unused_axes_{};
   std::set<std::string> assigned_{};  // variables
   std::vector<Move> moves_{};
-  std::vector<std::pair<std::size_t, Span>> changes_{};
-  std::set<std::string> constants_{};
+  std::vector<Change> changes_{};
+  std::set<std::string> constants_{};                                                  // scoped
+  std::set<std::string> constant_names_{}, variable_names_{};                          // as they are declared
+  std::set<std::string> unstated_{};                                                   // frames that are not known
+  std::vector<std::set<std::string>> locals_ = std::vector<std::set<std::string>>(1);  // variables of each routine
+  std::size_t routine_ = 0;                                                            // the present one; 0: none
+  std::map<std::string, std::size_t> last_use_{};                                      // of variables, by tokens
+  std::set<std::string> assumed_{};                      // harmless names that users state
+  std::set<std::string, std::less<>> called_by_text_{};  // routines
+  bool in_main_ = false;
+  static constexpr const char* main_begins = "main begins";  // no label has blanks
   std::map<std::string, bool> routines_{};  // of this file, and whether they may change their arguments
   std::set<std::string> parameters_{};      // of the present routine
   std::size_t refused_line_ = 0;
@@ -583,7 +699,7 @@ VERNIER_IMPL void read_rapid(std::string_view text, const std::string& name, con
   const ProgramText tokens = ProgramText::of(text, name, {.comments = "!", .quotes = "\"", .lines = false});
   const StatementTable table(std::string(rapid_harmless) + ' ' + std::string(rapid_functions), rapid_statements,
                              assumed);
-  RapidReader(tokens, program, table).read();
+  RapidReader(tokens, program, table, assumed).read();
 }
 
 }  // namespace vernier::detail

@@ -145,7 +145,7 @@ inline constexpr std::string_view rapid_move_options =
     "conc id v t z inpos wobj tload noeoffs t2 t3 t4 t5 t6 t7 t8 triggdata1 triggdata2 triggdata3 all weave seamname "
     "sched retr noconc dodelay";
 
-/// Functions that do nothing beside computing a value.
+/// Functions that compute a value; some write arguments, see below.
 inline constexpr std::string_view rapid_functions =
     "abs absdnum acos acosdnum ainput aoutput argname asin asindnum atan atan2 atan2dnum atandnum bitand bitanddnum "
     "bitcheck bitcheckdnum bitlsh bitlshdnum bitneg bitnegdnum bitor bitordnum bitrsh bitrshdnum bitxor bitxordnum "
@@ -168,5 +168,21 @@ inline constexpr std::string_view rapid_functions =
     "taskrunrob tasksinsync testandset testdi testsignread textget texttabfreetouse texttabget triggdatavalid trunc "
     "truncdnum tryint type uialphaentry uiclientexist uidnumentry uidnumtune uilistview uimessagebox uinumentry "
     "uinumtune validio valtostr vectmagn";
+
+/// A function that writes arguments.
+struct RapidWriter {
+  std::string_view name;  ///< in lower case
+  std::size_t first;      ///< it may write this argument, counted from 1, and those behind it
+};
+
+/// Functions that write arguments.
+inline constexpr RapidWriter rapid_writers[] = {
+    {"strtoval", 2},        {"getnextsym", 1},       {"getnextmechunit", 1}, {"getnextcyclicbool", 1},
+    {"readdir", 2},         {"testandset", 1},       {"getsignalorigin", 2}, {"defaccframe", 4},
+    {"calcrotaxframez", 4}, {"calcrotaxisframe", 3},
+};
+
+/// Options by which any function writes their values.
+inline constexpr std::string_view rapid_writing_options = "errornumber breakflag";
 
 }  // namespace vernier::detail

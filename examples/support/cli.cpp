@@ -344,7 +344,8 @@ void Program::parse(const std::string& default_out, const char* out_description,
 
 void Program::open_output(const std::string& name, std::string& file) {
   if (file.empty()) return;
-  if (name != "--out" && std::filesystem::path(file).extension() == ".svg")  // else a figure may overwrite it
+  const bool figure = name == "--out" || name == "--svg";
+  if (!figure && std::filesystem::path(file).extension() == ".svg")  // else a figure may overwrite it
     throw UsageError(fmt::format("{} {}: figures are called so, and this is none; take another name", name, file));
   vernier::detail::Destination to{.file = {}, .descriptor = STDOUT_FILENO};
   vernier::Writing writing = vernier::Writing::through;

@@ -116,8 +116,7 @@ int run(support::Program& program) {
 int main(int argc, char** argv) {
   const support::About about{
       "simulate_measurements",
-      "Simulates the measurement of an arm whose links, gears, encoders and joints have errors. Under a stated payload "
-      "its joints give way as well.",
+      "Simulates the measurement of an arm whose links, gears and encoders have errors and whose joints give way.",
       {"simulate_measurements --robot abb_irb120 --poses poses.csv --out measured.csv",
        "simulate_measurements --robot rail.json --poses poses.csv --noise-mm 0.1 --positions-only --out measured.csv"}};
   return support::run_program(about, argc, argv, run);

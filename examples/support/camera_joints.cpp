@@ -91,8 +91,9 @@ CameraJoints calibrate_arm(const vn::RobotDescription& description, const Calibr
     return vn::covariance_with_shared_errors(estimate, shared, common);
   };
   measured.held_out += "; images held out have their share in the intrinsics";
-  return {calibrate_measured<N>(description, o, fit, std::make_shared<const MeasuredFiles<N>>(std::move(measured))),
-          found.camera, found.moved, found.converged, image_error};
+  const auto all = std::make_shared<const MeasuredFiles<N>>(std::move(measured));
+  return {calibrate_measured<N>(description, o, fit, [&] { return all; }), found.camera, found.moved, found.converged,
+          image_error};
 }
 
 }  // namespace

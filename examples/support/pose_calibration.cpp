@@ -70,12 +70,14 @@ std::string save_station(const std::string& path, const vn::Calibration<vn::DhCh
 
 template <int N>
 PoseCalibration calibrate_measured(const vn::RobotDescription& description, const CalibrationOptions& o,
-                                   const vn::FitOptions& fit, std::shared_ptr<const MeasuredFiles<N>> measured) {
+                                   const vn::FitOptions& fit,
+                                   const std::function<std::shared_ptr<const MeasuredFiles<N>>()>& measure) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   std::optional<vn::SavedModel> earlier;
   if (!o.prior.empty()) earlier = vn::read_model(o.prior);
   std::optional<vn::ArmPrior> prior;
   if (earlier) prior = prior_of(*earlier, N);
+  const std::shared_ptr<const MeasuredFiles<N>> measured = measure();
   std::vector<vn::DataAudit> audits = audit_files(robot, *measured);
 
   vn::CalibrateOptions options = o.calibrate;
@@ -147,9 +149,9 @@ PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, con
   const CalibrationOptions o = options_for(options, robot);
   return dispatch_dof(robot.dof(), [&](auto n) {
     try {
-      return calibrate_measured<n()>(
-          robot, o, fit,
-          std::make_shared<const MeasuredFiles<n()>>(read_measurements<n()>(o, robot.joint_types(), fit.seed)));
+      return calibrate_measured<n()>(robot, o, fit, [&] {
+        return std::make_shared<const MeasuredFiles<n()>>(read_measurements<n()>(o, robot.joint_types(), fit.seed));
+      });
     } catch (const vn::DataError& error) {
       const std::string advice = passive_joint_advice(robot.arm<n()>(), o);
       if (advice.empty()) throw;
@@ -160,7 +162,8 @@ PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, con
 
 #define VERNIER_INSTANTIATE(N)                                                                           \
   template PoseCalibration calibrate_measured<N>(const vn::RobotDescription&, const CalibrationOptions&, \
-                                                 const vn::FitOptions&, std::shared_ptr<const MeasuredFiles<N>>);
+                                                 const vn::FitOptions&,                                  \
+                                                 const std::function<std::shared_ptr<const MeasuredFiles<N>>()>&);
 VERNIER_FOR_ALL_DOF(VERNIER_INSTANTIATE)
 #undef VERNIER_INSTANTIATE
 

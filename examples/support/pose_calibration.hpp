@@ -58,11 +58,13 @@ struct PoseCalibration {
 PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, const CalibrationOptions& options,
                                      const vernier::FitOptions& fit);
 
-/// Does so with measurements that were read already; of an arm of N joints, with the options that it leaves open.
-/// Compiled in pose_calibration.cpp, for all numbers of joints.
+/// Does so with other measurements; of an arm of N joints, with the options that it leaves open. Compiled in
+/// pose_calibration.cpp, for all numbers of joints.
+/// @param measure reads them, after an earlier model was read and fits
 template <int N>
 PoseCalibration calibrate_measured(const vernier::RobotDescription& robot, const CalibrationOptions& options,
-                                   const vernier::FitOptions& fit, std::shared_ptr<const MeasuredFiles<N>> measured);
+                                   const vernier::FitOptions& fit,
+                                   const std::function<std::shared_ptr<const MeasuredFiles<N>>()>& measure);
 
 /// Options with those frames unknown that the arm does not state as known, and without what its passive joints hide,
 /// which it prints.

@@ -105,17 +105,15 @@ VERNIER_IMPL std::optional<CsvColumn> CsvTable::find(std::string_view stem, cons
   return found;
 }
 
-/// Whether a controller may call the joint of a column so: J1, joint_1, axis1 or A1 for the stem q1_.
+/// Whether a controller may call the joint of a column so: J1, joint_1, axis1 or A1 for the stem q1.
 VERNIER_LOCAL bool names_joint(std::string_view name, std::string_view stem) {
   std::string plain(name);
   for (char& c : plain)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  for (const std::string_view word : {"joint", "axis", "j", "a"})
-    for (const std::string_view between : {"", "_", " "})
-      if (message('q', std::string_view(plain).substr((std::min)(plain.size(), word.size() + between.size())), '_') ==
-              stem &&
-          plain.starts_with(message(word, between)))
-        return true;
+  if (!stem.starts_with('q')) return false;
+  for (const char* word : {"joint", "axis", "j", "a"})
+    for (const char* between : {"", "_", " "})
+      if (plain == message(word, between, stem.substr(1))) return true;
   return false;
 }
 

@@ -346,7 +346,7 @@ void Program::open_output(const std::string& name, std::string& file) {
   if (file.empty()) return;
   const bool figure = name == "--out" || name == "--svg";
   if (!figure && std::filesystem::path(file).extension() == ".svg")  // else a figure may overwrite it
-    throw UsageError(fmt::format("{} {}: figures are called so, and this is none; take another name", name, file));
+    throw UsageError(fmt::format("{} {}: names that end in .svg are for figures; take another name", name, file));
   vernier::detail::Destination to{.file = {}, .descriptor = STDOUT_FILENO};
   vernier::Writing writing = vernier::Writing::through;
   if (file != "-") {

@@ -143,8 +143,9 @@ nlohmann::json correction_json(const CorrectionReport& report, const CorrectionT
 }
 
 void print_correction(const CorrectionReport& report, const CorrectionTotals& totals) {
-  fmt::print("{}: {} of {} targets corrected; in the model the tool meets them within {:.2g} mm\n", report.robot,
-             totals.met, report.targets, totals.largest);
+  fmt::print("{}: {} of {} targets corrected", report.robot, totals.met, report.targets);
+  if (totals.met > 0) fmt::print("; in the model the tool meets them within {:.2g} mm", totals.largest);
+  fmt::print("\n");
   if (report.expected_error > 0)
     fmt::print("The model itself errs by {:.3g} mm at poses it was not fitted to ({})\n", report.expected_error * 1e3,
                report.held_out ? "mean of held-out poses" : "rms of poses left out in turn");

@@ -124,6 +124,7 @@ vernier::RobotDescription choose_robot(const RobotOptions& options, vernier::Urd
     out.down = down.normalized();
     out.down_stated = true;
   }
+  // rows of the modified convention may turn the rail before it slides
   if (!out.down_stated && !out.modified && out.rows.front().joint == vernier::JointType::prismatic)
     fmt::print(
         "{}: gravity is taken to act along joint 1, which slides; if it is a rail, state the direction by --down or by "

@@ -33,9 +33,9 @@ class Correct : public ::testing::Test {
   }
 
   CommandResult correct(const std::string& arguments) {
-    return vernier_test::run_command(
-        "cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/correct' --model model.json " + arguments,
-        folder_.path());
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/correct' " +
+                                         (arguments.starts_with("--model") ? "" : "--model model.json ") + arguments,
+                                     folder_.path());
   }
 
   std::vector<std::string> lines(const std::string& name) {
@@ -58,7 +58,18 @@ TEST_F(Correct, TheActualArmGoesWhereTheNominalOneWould) {
   write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
   const CommandResult done = correct("--targets targets.csv --out commands.csv");
   ASSERT_EQ(done.exit_code, 0) << done.errors;
-  EXPECT_NE(done.output.find("30 of 30 targets corrected"), std::string::npos) << done.output;
+  EXPECT_NE(done.output.find("30 of 30 targets corrected; in the model the tool meets them within "), std::string::npos)
+      << done.output;
+  EXPECT_EQ(done.output.find("The model itself errs"), std::string::npos) << done.output;  // nobody measured it
+  const auto said_with = [&](const Provenance& from) {
+    save(folder_ / "known.json", robot_.with_model(robot_.model(), from));
+    return correct("--model known.json --targets targets.csv --out known.csv").output;
+  };
+  EXPECT_NE(said_with({.left_out_error = 70e-6, .held_out_error = 51.3e-6})
+                .find("The model itself errs by 0.0513 mm at poses it was not fitted to (mean of held-out poses)\n"),
+            std::string::npos);
+  EXPECT_NE(said_with({.left_out_error = 70e-6}).find("0.07 mm at poses it was not fitted to (rms of poses left out"),
+            std::string::npos);
   EXPECT_EQ(lines("commands.csv").at(0),
             "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,status,predicted_error_mm,gate,target,point,"
             "predicted_rotation_mrad,deviation_mm,radius95_mm,singularity,singularity_deg");

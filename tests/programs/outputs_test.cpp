@@ -157,7 +157,7 @@ TEST_F(Outputs, TwoOutputsAreTwoFiles) {
   expect_refused("$P/calibrate --robot abb_irb120 --data measured.csv --save m --report m", 2,
                  "--save and --report cannot both be m");
   expect_refused("$P/calibrate --robot abb_irb120 --data measured.csv --save calibrate_out/poses.svg", 2,
-                 "--save calibrate_out/poses.svg: figures are called so");
+                 "--save calibrate_out/poses.svg: names that end in .svg are for figures");
   const CommandResult beside = run(correct + "--out x --json x.partial");
   EXPECT_EQ(beside.exit_code, 0) << beside.errors;
   EXPECT_EQ(nlohmann::json::parse(read_file(at("x.partial")))["targets"], 2);

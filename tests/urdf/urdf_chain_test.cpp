@@ -172,6 +172,24 @@ TEST(UrdfChain, BaseAndTipAreFoundWhereThereIsOneOfEach) {
             std::string::npos);
 }
 
+// Gravity acts along -z of the base link, wherever the first axis points: upright, hanging, or along a rail.
+TEST(UrdfChain, GravityActsDownwardsInTheBaseLink) {
+  struct Case {
+    const char *type, *axis;
+    double along;  // of gravity along the z axis of the first row
+  };
+  for (const Case& one : {Case{"revolute", "0 0 1", -1}, Case{"revolute", "0 0 -1", 1}, Case{"prismatic", "1 0 0", 0},
+                          Case{"prismatic", "0 0.6 0.8", -0.8}}) {
+    const UrdfChain chain = parse_urdf(message("<robot name='r'><link name='a'/><link name='b'/><joint name='j' type='",
+                                               one.type, "'><parent link='a'/><child link='b'/><axis xyz='", one.axis,
+                                               "'/><limit lower='-1' upper='1'/></joint></robot>"),
+                                       "r.urdf");
+    EXPECT_NEAR(chain.robot.down.z(), one.along, 1e-12) << one.axis;
+    EXPECT_LT((chain.robot.base.linear() * chain.robot.down + Vector3::UnitZ()).norm(), 1e-12) << one.axis;
+    EXPECT_TRUE(chain.robot.down_stated);
+  }
+}
+
 TEST(UrdfChain, PartOfATreeIsAChainToo) {
   const UrdfChain chain = parse_urdf(vernier_test::abb_like_urdf(), "abb.urdf", "link_1", "plate");
   EXPECT_EQ(chain.robot.joint_names, (std::vector<std::string>{"joint_2", "joint_3"}));

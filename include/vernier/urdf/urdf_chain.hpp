@@ -28,11 +28,11 @@ struct UrdfChain {
 /// The chain between two links of a URDF file. Fixed joints are merged. Its rows are exact for any joints: the frame of
 /// a joint next to a nearly parallel one has Hayati's beta, see `DhRow`; the last row is zero, what is behind the last
 /// axis is the tool. Joint values keep their meaning. A joint that mimics another one is passive: it is a row of the
-/// chain, but no joint of the controller (`RobotDescription::controller`). Orientations are `rpy`, or `quat_xyzw` in a
-/// file of version 1.1. Limits that are not in order, `safety_controller`, `calibration` and elements of joints that
-/// are not of URDF are ignored, with a remark; meshes, inertias and other branches without one. Refused is what may
-/// move a frame and is not known: attributes and contents of `origin`, `axis`, `parent` and `child`, elements of joints
-/// with a place in space.
+/// chain, but no joint of the controller (`RobotDescription::controller`). Gravity acts along -z of the base link.
+/// Orientations are `rpy`, or `quat_xyzw` in a file of version 1.1. Limits that are not in order, `safety_controller`,
+/// `calibration` and elements of joints that are not of URDF are ignored, with a remark; meshes, inertias and other
+/// branches without one. Refused is what may move a frame and is not known: attributes and contents of `origin`,
+/// `axis`, `parent` and `child`, elements of joints with a place in space.
 /// @param path      a file of at most 16 MiB, plain XML; xacro is to be run before
 /// @param base_link where the chain begins; empty: the tree's root
 /// @param tip_link  where it ends; empty: the only link without a child

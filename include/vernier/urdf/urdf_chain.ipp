@@ -174,6 +174,8 @@ VERNIER_IMPL UrdfChain parse_urdf(const std::string& text, const std::string& fi
   out.robot.rows = found.rows;
   out.robot.controller = detail::controller_of(moving, file);
   out.robot.base = found.base;
+  out.robot.down = -found.base.linear().row(2).transpose();  // -z of the base link
+  out.robot.down_stated = true;
   out.robot.drives.resize(axes.size());
   for (std::size_t i = 0; i < links.size(); ++i) out.link_in_row.push_back(found.frames[i].inverse() * links[i]);
   out.robot.tool = found.frames.back().inverse() * at;

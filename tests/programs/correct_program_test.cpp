@@ -477,7 +477,7 @@ TEST_F(CorrectProgram, WhatIsNotCorrectedIsListed) {
       << done.errors;
   for (const char* remark :
        {"line 4: not corrected: MoveJ Offs(p1,0,0,50): computed, not a literal",
-        "line 6: not corrected: MoveL p9: declared in another file, or a parameter", "line 7: not corrected: target: ",
+        "line 6: not corrected: MoveL p9: declared in another file", "line 7: not corrected: target: ",
         "line 8: not corrected: target: no joint values within the limits have its configuration",
         "line 9: not corrected: target: the frame of its tool hand is not known; name it with --tool"})
     EXPECT_NE(done.output.find(remark), std::string::npos) << remark << "\n" << done.output;

@@ -137,7 +137,7 @@ TEST(RapidDetails, ArgumentsOnSeveralLines) {
   const RobotProgram program = rapid_module("", "MoveL\n p\n,v1,fine,gun;\nMoveL\nelsewhere\n,v1,fine,gun;\n");
   EXPECT_EQ(named(program, "p").move, TargetMove::linear);
   EXPECT_EQ(named(program, "p").tool, "gun");
-  EXPECT_EQ(remarks(program), "9 MoveL elsewhere: declared in another file, or a parameter\n");
+  EXPECT_EQ(remarks(program), "9 MoveL elsewhere: declared in another file\n");
 }
 
 TEST(RapidDetails, ToolAndWorkObject) {
@@ -177,9 +177,9 @@ TEST(RapidDetails, Declarations) {
   EXPECT_NE(told("[[1,2,3],[1,0,0,0],[0,0,0,0],[8.8E8,9E9,9E9,9E9,9E9,9E9]]").find("external axes are in use"),
             std::string::npos);
   EXPECT_EQ(told("[[1,2,3],[1,0,0,0],[0,0,0,0],[9E8,9E9,9E9,9E9,9E9,9E9]]"), "");
-  // a variable for the configuration: a target without one
-  const RobotProgram program = rapid_module("VAR robtarget c:=[[1,2,3],[1,0,0,0],conf," + no_axes + "];\n", "");
-  EXPECT_TRUE(named(program, "c").configuration.empty());
+  // in another configuration other joint values err otherwise
+  EXPECT_EQ(told("[[1,2,3],[1,0,0,0],conf," + no_axes + "]"),
+            "4 [[1,2,3],[1,0,0,0],conf," + no_axes + "]: its configuration is no literal\n");
   // joint values
   EXPECT_EQ(remarks(rapid_module("VAR jointtarget j:=[[1,2,x,4,5,6]," + no_axes + "];\n", "")),
             "4 [[1,2,x,4,5,6]," + no_axes + "]: joint values are no numbers\n");
@@ -306,8 +306,8 @@ TEST(UrscriptDetails, Assignments) {
   const auto told = [](const std::string& lines) { return remarks(ur_lines(lines + "movel(a)\n")); };
   EXPECT_EQ(told("a=p[1,0,0,0,0,0];b=1\n"), "");
   EXPECT_EQ(told("if x: a=p[1,0,0,0,0,0]: end\n"), "");
-  EXPECT_EQ(told("a=p[1,0,0,0,0,0]+x\n"), "3 movel(a): its value is computed\n");
-  EXPECT_EQ(told("a=p [1,0,0,0,0,0]\n"), "3 movel(a): its value is computed\n");
+  EXPECT_EQ(told("a=p[1,0,0,0,0,0]+x\n"), "3 movel(a): computed, not a literal\n");
+  EXPECT_EQ(told("a=p [1,0,0,0,0,0]\n"), "3 movel(a): computed, not a literal\n");
   EXPECT_EQ(told("if a==p[1,0,0,0,0,0]:\n"), "3 movel(a): not assigned in this file\n");
   EXPECT_EQ(told("f(a=p[1,0,0,0,0,0])\n"), "3 movel(a): not assigned in this file\n");  // a named argument
 }

@@ -66,9 +66,9 @@ TEST(ParseProgram, RapidTargets) {
             "15 [[1,2,3],[1,0,0,0],[0,0,0,0],[500,9E9,9E9,9E9,9E9,9E9]]: external axes are in use\n"
             "22 MoveL Offs(p10,0,0,50): computed, not a literal\n"
             "24 MoveL here: a variable without literal value\n"
-            "25 MoveL elsewhere: declared in another file, or a parameter\n"
+            "25 MoveL elsewhere: declared in another file\n"
             "26 here:=CRobT(): the program changes this target\n"
-            "27 p10.trans.x:=p10.trans.x+5: the program changes this target\n"
+            "27 here.trans.x:=here.trans.x+5: the program changes this target\n"
             "28 [[x,8,9],[1,0,0,0],[0,0,0,0],none]: position or orientation are no numbers\n");
   ASSERT_EQ(program.tools.count("gun"), 1u);
   EXPECT_LT((program.tools.at("gun").linear() - by_rows({0, 0, 1, 1, 0, 0, 0, 1, 0})).norm(), 1e-12);
@@ -145,7 +145,7 @@ TEST(ParseProgram, UrScript) {
             "5 feature: no move of this file uses it\n"
             "12 movec(pose_trans(a_p, p[0,0,0.1,0,0,0])): computed, not a literal\n"
             "14 movej(q_home): not assigned in this file\n"
-            "16 movel(moved): its value is computed\n");
+            "16 movel(moved): computed, not a literal\n");
 }
 
 TEST(ParseProgram, FanucTp) {
@@ -176,10 +176,10 @@ TEST(ParseProgram, FanucTp) {
             "12 L PR[2] 100mm/sec FINE: a position register\n"
             "13 L P[2] 100mm/sec FINE Offset,PR[1]: an offset that a register adds\n"
             "14 L P[5] 100mm/sec FINE INC: a relative move\n"
-            "15 J P[R[1]] 50% FINE: no position of this file\n"
+            "15 J P[R[1]] 50% FINE: computed, not a literal\n"
             "16 CALL P: what it does to targets is not known\n"
             "36 P[4]: a component is missing or no number\n"
-            "42 P[5]: no move of this file uses it\n");
+            "42 P[5]: moves use it as an increment or with an offset\n");
 }
 
 TEST(ParseProgram, DamagedFanucPositionsAreListed) {

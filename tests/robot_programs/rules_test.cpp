@@ -364,9 +364,11 @@ TEST(KrlRules, AssignmentsAndWhatNoMoveUses) {
   EXPECT_EQ(program.targets.size(), 4u);
   EXPECT_EQ(before(program, "twice"), "");  // which of both is not known
   EXPECT_EQ(before(program, "last"), "");
-  const RobotProgram typed = krl_program("DECL E6POS unused={X 1,Y 2,Z 3,A 0,B 0,C 0}\nDECL E6POS a[2]\n");
-  EXPECT_EQ(typed.targets.size(), 1u);  // another file may use it
-  EXPECT_EQ(remarks(typed), "");
+  const std::string declared = "DECL E6POS unused={X 1,Y 2,Z 3,A 0,B 0,C 0}\nDECL E6POS a[2]\n";
+  EXPECT_EQ(remarks(krl_program(declared)), "2 unused: no move of this file uses it\n");
+  const RobotProgram list = parse_program(ProgramLanguage::krl, "DEFDAT m\n" + declared + "ENDDAT\n", "m.dat");
+  EXPECT_EQ(list.targets.size(), 1u);  // another file may use it
+  EXPECT_EQ(remarks(list), "");
 }
 
 TEST(KrlRules, BitsAndNumbers) {
@@ -376,8 +378,7 @@ TEST(KrlRules, BitsAndNumbers) {
   };
   EXPECT_EQ(configuration("S 'H2',T 'H32'"), (std::vector<int>{2, 50}));
   EXPECT_EQ(configuration("S 'b110',T 'hFF'"), (std::vector<int>{6, 255}));
-  EXPECT_EQ(configuration("S 2"), std::vector<int>{});  // one of them says nothing
-  for (const char* wrong : {"S 2.5,T 3", "S 2000,T 3", "S -1,T 3", "S x,T 3", "E1 x", "E1 5", "E6 -5"})
+  for (const char* wrong : {"S 2", "T 50", "S 2.5,T 3", "S 2000,T 3", "S -1,T 3", "S x,T 3", "E1 x", "E1 5", "E6 -5"})
     EXPECT_EQ(configuration(wrong), std::vector<int>{-1}) << wrong;
   EXPECT_EQ(remarks(krl_program("PTP {X 1,Y 2,Z 3,A 4,B 5,C 6,S 2.5,T 3}\n")),
             "2 {X 1,Y 2,Z 3,A 4,B 5,C 6,S 2.5,T 3}: S or T is no number of bits\n");
@@ -510,7 +511,8 @@ TEST(FanucRules, IncrementalMoves) {
   const RobotProgram program =
       fanuc_program("   1:L P[1] 100mm/sec FINE ;\n   2:L P[1] 100mm/sec FINE INC ;\n", position);
   EXPECT_TRUE(program.targets.empty());
-  EXPECT_EQ(remarks(program), "4 L P[1] 100mm/sec FINE INC: a relative move\n6 P[1]: no move of this file uses it\n");
+  EXPECT_EQ(remarks(program),
+            "4 L P[1] 100mm/sec FINE INC: a relative move\n6 P[1]: moves use it as an increment or with an offset\n");
   for (const std::string option : {"TA .1sec,DO[3:zinc]=ON", "TB .10sec,CALL INCOUNT", "TB .1sec,CALL INC_A"}) {
     const RobotProgram other = fanuc_program("   1:L P[1] 100mm/sec FINE " + option + " ;\n", position);
     EXPECT_EQ(other.targets.size(), 1u) << option;

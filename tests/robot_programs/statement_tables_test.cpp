@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <map>
 #include <set>
 #include <span>
 #include <sstream>
@@ -24,10 +26,11 @@ using detail::ProgramStatement;
 using detail::StatementClass;
 using Words = std::set<std::string, std::less<>>;
 
-/// Statements of a language, the names of all moves and options joined.
+/// Statements of a language.
 struct Table {
   const char* title;
-  std::string harmless, honoured;
+  std::string harmless, functions, moves, options;
+  const char* title_of_options;
   std::span<const ProgramStatement> others;
 };
 
@@ -39,30 +42,67 @@ std::string joined(std::initializer_list<std::string_view> lists) {
 
 std::vector<Table> tables() {
   using namespace detail;
-  return {{"RAPID", joined({rapid_harmless, rapid_functions}),
-           joined({rapid_joint_moves, rapid_linear_moves, rapid_circular_moves, rapid_move_options}), rapid_statements},
-          {"KRL", joined({krl_harmless, krl_functions, krl_words, krl_words_alone}), "", krl_statements},
-          {"URScript", std::string(urscript_harmless), joined({urscript_joint_moves, urscript_linear_moves}),
-           urscript_statements},
-          {"Fanuc", std::string(fanuc_harmless), std::string(fanuc_move_options), fanuc_statements}};
+  std::string arguments;
+  for (const UrscriptMove& move : urscript_move_arguments) arguments += std::string(move.arguments) + ' ';
+  const char* const options = "honoured: options of moves";
+  return {{"RAPID", std::string(rapid_harmless), std::string(rapid_functions),
+           joined({rapid_joint_moves, rapid_linear_moves, rapid_circular_moves}), std::string(rapid_move_options),
+           options, rapid_statements},
+          {"KRL", joined({krl_harmless, krl_functions, krl_words, krl_words_alone}), "", "", "", "", krl_statements},
+          {"URScript", std::string(urscript_harmless), "", joined({urscript_joint_moves, urscript_linear_moves}),
+           arguments, "honoured: arguments of moves", urscript_statements},
+          {"Fanuc", std::string(fanuc_harmless), "", "", std::string(fanuc_move_options), options, fanuc_statements}};
 }
 
-/// What stands between ` in the rows of one class of the page's table of a language.
-Words page_words(const std::string& title, const std::string& kind) {
+/// The page's lists of a language: their words by the title in front, **voiding: positions**.
+std::map<std::string, Words> page_lists(const std::string& title) {
   std::ifstream file(VERNIER_STATEMENTS_PAGE);
-  std::string line;
-  bool inside = false;
-  Words out;
+  std::string line, kind;
+  bool inside = false, listed = false;
+  std::map<std::string, Words> out;
   while (std::getline(file, line)) {
     if (line.starts_with("## ")) inside = line == "## " + title;
-    if (!inside || line.find(kind) == std::string::npos || line.find(kind) > 30) continue;
-    for (std::size_t open = line.find('`'); open != std::string::npos;) {
-      const std::size_t close = line.find('`', open + 1);
-      out.insert(detail::lower_case(line.substr(open + 1, close - open - 1)));
-      open = line.find('`', close + 1);
+    if (line.starts_with("**")) kind = line.substr(2, line.rfind("**") - 2);
+    if (line.starts_with("```")) listed = !listed;
+    if (!inside || !listed || line.starts_with("```")) continue;
+    const bool ends = line.starts_with("until ");
+    if (ends) line.erase(0, 6);
+    for (std::size_t begin = 0; begin < line.size();) {
+      const std::size_t end = std::min(line.find(',', begin), line.size());
+      const std::string word = detail::lower_case(line.substr(begin, end - begin));
+      // a statement that ends what it begins stands in both lines
+      EXPECT_TRUE(out[kind].insert(word).second || ends || kind.starts_with("honoured")) << word << " is there twice";
+      begin = line.find_first_not_of(", ", end);
     }
   }
   return out;
+}
+
+/// What the page calls a state.
+std::string called(detail::ProgramState state) {
+  using enum detail::ProgramState;
+  switch (state) {
+    case joint_moves: return "configurations in joint moves";
+    case linear_moves: return "configurations in linear moves";
+    case displacement: return "positions";
+    case orientation: return "orientations of linear moves";
+    case external_axes: return "external axes";
+    case external_tool: return "the tool stands still";
+    case tracking: return "work objects that move";
+    case frame_data: return "frames of tools and work objects";
+    case following: return "where the arm gives way";
+    default: return "all targets";
+  }
+}
+
+/// The page's title of a row's list.
+std::string list_of(const ProgramStatement& row) {
+  switch (row.kind) {
+    case StatementClass::harmless: return "harmless";
+    case StatementClass::moves: return "moves without a target, listed";
+    case StatementClass::own: return "voiding: targets in their own arguments";
+    default: return "voiding: " + called(row.state);
+  }
 }
 
 /// A row as the page names it.
@@ -76,24 +116,18 @@ std::string shown(const std::string& title, const ProgramStatement& row) {
 
 TEST(StatementTables, AreThoseOfThePage) {
   for (const Table& table : tables()) {
-    Words harmless = detail::words_of(table.harmless), voiding, moves;
-    for (const ProgramStatement& row : table.others) {
-      if (row.kind == StatementClass::harmless)
-        harmless.insert(shown(table.title, row));
-      else
-        (row.kind == StatementClass::moves ? moves : voiding).insert(shown(table.title, row));
-    }
-    EXPECT_EQ(page_words(table.title, "harmless"), harmless) << table.title;
-    EXPECT_EQ(page_words(table.title, "voiding"), voiding) << table.title;
-    EXPECT_EQ(page_words(table.title, "moves without a target"), moves) << table.title;
-    const Words honoured = page_words(table.title, "honoured");
-    for (const std::string& name : detail::words_of(table.honoured)) EXPECT_EQ(honoured.count(name), 1u) << name;
+    std::map<std::string, Words> lists{{"harmless", detail::words_of(table.harmless)}};
+    if (!table.functions.empty()) lists["harmless functions"] = detail::words_of(table.functions);
+    if (!table.moves.empty()) lists["honoured: moves"] = detail::words_of(table.moves);
+    if (!table.options.empty()) lists[table.title_of_options] = detail::words_of(table.options);
+    for (const ProgramStatement& row : table.others) lists[list_of(row)].insert(shown(table.title, row));
+    EXPECT_EQ(page_lists(table.title), lists) << table.title;
   }
 }
 
 TEST(StatementTables, HaveEachNameInOneClass) {
   for (const Table& table : tables()) {
-    const Words harmless = detail::words_of(table.harmless), honoured = detail::words_of(table.honoured);
+    const Words harmless = detail::words_of(table.harmless + ' ' + table.functions);
     std::set<std::pair<std::string_view, std::string_view>> seen;
     for (const ProgramStatement& row : table.others) {
       EXPECT_TRUE(seen.insert({row.name, row.option}).second) << row.name;
@@ -101,8 +135,7 @@ TEST(StatementTables, HaveEachNameInOneClass) {
       EXPECT_EQ(std::string(row.name), detail::lower_case(row.name));
       EXPECT_FALSE(detail::reason_of(row.state).empty());
     }
-    if (std::string(table.title) == "Fanuc") continue;  // its options are no statements
-    for (const std::string& name : honoured) EXPECT_EQ(harmless.count(name), 0u) << name;
+    for (const std::string& name : detail::words_of(table.moves)) EXPECT_EQ(harmless.count(name), 0u) << name;
   }
 }
 

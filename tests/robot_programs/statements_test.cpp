@@ -75,6 +75,13 @@ RobotProgram tp_lines(const std::vector<std::string>& lines, const std::vector<s
   return parse_program(fanuc_tp, text + "/END\n", "m.ls", harmless);
 }
 std::string tp_move(int k) { return message("J P[", k, "] 100% FINE"); }
+/// A program with a statement in line 4, between moves: the first is corrected, the second is not.
+RobotProgram voids_what_follows(const char* statement) {
+  const RobotProgram program = tp_lines({tp_move(1), statement, tp_move(2)});
+  EXPECT_NE(corrected(program).find("P[1]"), std::string::npos) << statement;
+  EXPECT_EQ(corrected(program).find("P[2]"), std::string::npos) << statement;
+  return program;
+}
 
 // ---- the class: a statement that can change what targets mean ----
 
@@ -99,6 +106,7 @@ TEST(StatementsRapid, VoidTheTargetsBehindThem) {
                                 "DropWObj w;",
                                 "SoftElbow;",
                                 "IndAMove STN_1,2\\ToAbsNum:=0,20;",
+                                "WriteCfgData \"/MOC/MOTOR_CALIB/rob1_1\",\"cal_offset\",x;",
                                 "Nobody;",
                                 "Nobody x,y;",
                                 "n:=nobody(1);",
@@ -284,9 +292,7 @@ TEST(StatementsFanuc, VoidTheTargetsBehindThem) {
                                 "  (UFRAME_NUM=(3))",
                                 "  GROUP X",
                                 "J P[4] 100% FINE TB .5sec,CALL NOBODY"}) {
-    const RobotProgram program = tp_lines({tp_move(1), statement, tp_move(2)});
-    EXPECT_NE(corrected(program).find("P[1]"), std::string::npos) << statement;
-    EXPECT_EQ(corrected(program).find("P[2]"), std::string::npos) << statement;
+    const RobotProgram program = voids_what_follows(statement);
     EXPECT_NE(about(program, "P[2]"), "") << statement;
   }
   for (const char* option : {"RTCP", "COORD", "COORD[R[1]]", "Wjnt", "MROT", "Nobody", "ACC80 RTCP", "Search[1]"}) {
@@ -391,9 +397,7 @@ TEST(StatementsFanuc, NamesThatBeginAsInstructions) {
                                 "  LBL PRINT",
                                 "  JMP HOME",
                                 "  Hand open 1"}) {
-    const RobotProgram program = tp_lines({tp_move(1), statement, tp_move(2)});
-    EXPECT_NE(corrected(program).find("P[1]"), std::string::npos) << statement;
-    EXPECT_EQ(corrected(program).find("P[2]"), std::string::npos) << statement;
+    const RobotProgram program = voids_what_follows(statement);
     EXPECT_EQ(about(program, "P[2]").find("line 4, "), 0u) << statement << remarks(program);
     EXPECT_NE(remarks(program).find("4 "), std::string::npos) << statement;
   }
@@ -451,6 +455,49 @@ TEST(StatementsFanuc, PositionsThatAreChangedStay) {
   EXPECT_EQ(corrected(tp_lines({tp_move(1), "L P[1] 100mm/sec FINE Offset,PR[1]"})), "P[1]P[2]P[3]P[4]");
 }
 
+TEST(StatementsFanuc, OptionsMayFollowAnyBlank) {
+  for (const char* option : {"FINE\tINC", "CNT10,INC", "FINE\n    :  INC", "FINE\tOffset,PR[1]", "FINE,Tool_Offset"}) {
+    const RobotProgram program = tp_lines({std::string("L P[1] 100mm/sec ") + option, tp_move(2)});
+    EXPECT_EQ(corrected(program), "P[2]P[3]P[4]") << option;
+    EXPECT_EQ(about(program, "P[1]"), "moves use it as an increment or with an offset") << option;
+  }
+  const RobotProgram both = tp_lines({"C P[1]\n    :  P[2] 100mm/sec FINE INC"});
+  EXPECT_EQ(corrected(both), "P[3]P[4]");
+}
+
+// P[R[n]] may be any position, so what holds there concerns all.
+TEST(StatementsFanuc, PositionsWhoseNumberIsComputed) {
+  const RobotProgram plain = tp_lines({"J P[R[1]] 100% FINE"});
+  EXPECT_EQ(corrected(plain), "P[1]P[2]P[3]P[4]");
+  EXPECT_EQ(remarks(plain), "3 J P[R[1]] 100% FINE: computed, not a literal\n");
+  EXPECT_EQ(corrected(tp_lines({"  SOFTFLOAT[1]", "J P[R[1]] 100% FINE"})), "");
+  EXPECT_EQ(corrected(tp_lines({"L P[R[1]] 100mm/sec FINE INC"})), "");
+}
+
+// Applications state in front of /MN what changes all positions.
+TEST(StatementsFanuc, Headers) {
+  const auto with_header = [](const std::string& header, const std::vector<std::string>& harmless = {}) {
+    std::string text = "/PROG M\n/ATTR\nPROG_SIZE = 1;\n/APPL\n" + header + "/MN\n   1:L P[1] 1mm/sec FINE ;\n/POS\n";
+    text +=
+        "P[1]{\n GP1:\n UF : 1, UT : 2, CONFIG : 'N U T, 0, 0, 0',\n X = 1 mm, Y = 2 mm, Z = 3 mm,\n W = 1 deg, "
+        "P = 2 deg, R = 3 deg\n};\n/END\n";
+    return about(parse_program(fanuc_tp, text, "m.ls", harmless), "P[1]");
+  };
+  const std::string tracking = "LINE_TRACK;\n  LINE_TRACK_SCHEDULE_NUMBER      : 1;\n";
+  EXPECT_EQ(with_header(tracking), "line 6, LINE_TRACK_SCHEDULE_NUMBER : 1: work objects move");
+  EXPECT_EQ(with_header(tracking, {"LINE_TRACK_SCHEDULE_NUMBER"}), "");
+  EXPECT_EQ(with_header("LINE_TRACK;\n  LINE_TRACK_SCHEDULE_NUMBER : 0;\n  CONTINUE_TRACK_AT_PROG_END : TRUE;\n"), "");
+  EXPECT_EQ(with_header("  ENABLE_SINGULARITY_AVOIDANCE   : FALSE;\n PLTZ_MODE_ENABLE   : FALSE;\n"), "");
+  EXPECT_NE(with_header("  ENABLE_SINGULARITY_AVOIDANCE   : TRUE;\n"), "");
+  EXPECT_NE(with_header(" PLTZ_MODE_ENABLE   : TRUE;\n"), "");
+  EXPECT_EQ(with_header("  ARC Welding Equipment : 1,*,*,*,*;\n"), "");
+}
+
+// The instructions end at the section of positions, whatever their comments say.
+TEST(StatementsFanuc, InstructionsBehindTheNameOfASection) {
+  EXPECT_EQ(corrected(tp_lines({"  !as in /POS", "  CALL NOBODY", tp_move(1)})), "P[2]P[3]P[4]");
+}
+
 TEST(StatementsFanuc, AxesBeyondTheSixth) {
   const auto joints = [](const std::string& more) {
     return remarks(parse_program(fanuc_tp,
@@ -480,8 +527,43 @@ TEST(StatementsRapid, TargetsThatAreChangedStay) {
   EXPECT_EQ(corrected(rapid_lines("VAR jointtarget k:=[[0,0,0,0,30,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n"
                                   "k.robax.rax_1:=5;\nMoveAbsJ k,v1,fine,tool0;\n")),
             "abcdj");
-  // nothing but a move behind it would use a changed constant
-  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "a.trans:=[1,2,3];\n")), "abcdj");
+  EXPECT_EQ(corrected(rapid_lines(rapid_move("a") + "a.trans:=[1,2,3];\n")), "bcdj");
+  const std::string rest = ",[1,0,0,0],[0,0,0,0],[9E9,9E9,9E9,9E9,9E9,9E9]];\n";
+  for (const char* position : {"a.trans", "[1,2,z]", "[1,2,3]+shift"})  // values that are no literals
+    EXPECT_EQ(left(rapid_move("v") + "v:=[" + position + rest + rapid_move("v")), "abcdj") << position;
+  EXPECT_EQ(left(rapid_move("v") + "v:=" + rapid_value), "vvabcdj");
+}
+
+// What is no literal in all its parts is listed at its move.
+TEST(StatementsRapid, TargetsOfPartsAreComputed) {
+  const std::string axes = ",[9E9,9E9,9E9,9E9,9E9,9E9]]";
+  for (const std::string& target :
+       {std::string("[a.trans,a.rot,a.robconf,a.extax]"), "[[1,2,3]+v,[1,0,0,0],[0,0,0,0]" + axes,
+        "[v,[1,0,0,0],[0,0,0,0]" + axes, std::string("[j.robax,j.extax]")}) {
+    const RobotProgram program = rapid_lines("MoveJ " + target + ",v1,fine,tool0;\n" + rapid_move("b"));
+    EXPECT_EQ(remarks(program).find("8 MoveJ ["), 0u) << remarks(program);
+    EXPECT_NE(remarks(program).find(": computed, not a literal"), std::string::npos) << target;
+    EXPECT_EQ(before(program, "b"), "") << target;
+  }
+  for (const char* configuration : {"conf", "[0,n,0,0]", "a.robconf"})
+    EXPECT_NE(remarks(rapid_lines(message("MoveJ [[1,2,3],[1,0,0,0],", configuration, axes, ",v1,fine,tool0;\n")))
+                  .find("its configuration is no literal"),
+              std::string::npos)
+        << configuration;
+}
+
+// A routine of the file may have the name of a move or of a harmless statement.
+TEST(StatementDetails, RoutinesNamedAsStatements) {
+  const std::string off = "(num n)\nPDispSet d;\nENDPROC\n";
+  for (const char* name : {"PaintL", "MoveWeld", "SetDO"})
+    EXPECT_EQ(corrected(rapid_lines(message(name, " 1;\n") + rapid_move("b"), message("PROC ", name) + off)).find('b'),
+              std::string::npos)
+        << name;
+  for (const char* name : {"movep", "set_tcp", "sleep"})
+    EXPECT_EQ(corrected(ur_lines(message(name, "(a)\nmovel(b)\n"),
+                                 message("def ", name, "(x):\npath_offset_enable()\nend\n"))),
+              "")
+        << name;
 }
 
 TEST(StatementsRapid, FunctionsThatWriteArguments) {
@@ -862,6 +944,38 @@ TEST(KrlParameters, AreNoTargetsOfTheFile) {
   EXPECT_EQ(corrected(krl_lines("", "DEFFCT INT f(a:IN)\nPTP a\nENDFCT\nDEF other()\nPTP a\nEND\n")), "a");
 }
 
+// What a routine declares is no variable of the others.
+TEST(KrlVariables, OfRoutines) {
+  for (const char* declared : {"DECL POS a", "POS b[2], a", "DECL FRAME b, a"}) {
+    const RobotProgram program = krl_lines("PTP a\n", message("DEF sub()\n", declared, "\nLIN a\na.X=5\nEND\n"));
+    EXPECT_EQ(corrected(program), "a") << declared;
+    EXPECT_EQ(named(program, "a").move, TargetMove::joint) << declared;
+    EXPECT_NE(about(program, "LIN a"), "") << declared;
+  }
+  const RobotProgram both =
+      krl_lines("PTP a\n", "DEF sub()\nDECL POS a\na" + krl_value + "LIN a\nEND\nDEF other()\nLIN a\nEND\n");
+  EXPECT_EQ(corrected(both), "aa");
+  EXPECT_EQ(both.targets[0].line, 2u);
+  EXPECT_EQ(both.targets[0].move, TargetMove::unknown);  // of the first routine and the third
+}
+
+TEST(KrlMoves, HaveNoOtherArguments) {
+  for (const char* move : {"LIN a,5", "CIRC b,a,XY 90 C_DIS", "CIRC b,a,CA 90,5", "PTP a,,b"}) {
+    const RobotProgram program = krl_lines(std::string(move) + "\nLIN c\n");
+    EXPECT_EQ(corrected(program), "c") << move;
+    EXPECT_EQ(about(program, "a").find("line 6, "), 0u) << move;
+  }
+  for (const char* move : {"LIN a C_DIS C_ORI", "CIRC b,a,CA 90 C_DIS", "SCIRC b,a,CA 90 WITH $VEL.CP=1", "PTP a"})
+    EXPECT_NE(corrected(krl_lines(std::string(move) + "\nLIN c\n")).find('a'), std::string::npos) << move;
+  EXPECT_NE(remarks(krl_lines("PTP {X 1,Y 2,Z 3,A 0,B 0,C 0,S 2}\n")).find("S without T"), std::string::npos);
+}
+
+// With other numbers the frame would be another one.
+TEST(KrlFrameData, OfTargetsLeavesThemAsTheyAre) {
+  for (const char* frame : {"$BASE=a", "$TOOL=a:f", "BASE_DATA[3]=a"})
+    EXPECT_EQ(corrected(krl_lines(std::string(frame) + "\nPTP a\nPTP b\n")).find('a'), std::string::npos) << frame;
+}
+
 // A call of another file may have the name of a harmless statement.
 TEST(KrlWords, AreHarmlessAsStatementsAlone) {
   for (const char* call :
@@ -884,7 +998,7 @@ TEST(ChangedTargets, StayAsTheyAre) {
   }
   EXPECT_EQ(corrected(krl_lines("DECL E6AXIS H={A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\nH.A1=10\nPTP a\n")), "a");
   for (const char* change : {"a[0]=0.9", "a=get_actual_tcp_pose()", "a.remove(0)", "a.append(1)", "a.insert(0,0.9)",
-                             "n=a.pop()", "textmsg(a.pop())", "a.clear()"}) {
+                             "a.z=3", "n=a.pop()", "textmsg(a.pop())", "a.clear()"}) {
     const RobotProgram program = ur_lines("movej(a)\n" + std::string(change) + "\nmovej(a)\nmovej(b)\n");
     EXPECT_EQ(corrected(program).find('a'), std::string::npos) << change;
     EXPECT_NE(corrected(program).find('b'), std::string::npos) << change;
@@ -961,6 +1075,10 @@ TEST(LineEnds, AreCarriageReturnsAlone) {
   const RobotProgram other = parse_program(krl, krl_text, "m.src");
   ASSERT_EQ(other.targets.size(), 1u);
   EXPECT_EQ(stamped(krl_text, other, {}).find("DEF m() ; x\r; VERNIER-CORRECTED:\rPTP"), 0u);
+  const RobotProgram tp =
+      parse_program(fanuc_tp, "/PROG M\r/MN\r\r  1:  CALL\r : X ;\r  2:  GO HOME ;\r/POS\r/END\r", "m.ls");
+  EXPECT_EQ(remarks(tp),
+            "4 CALL : X: what it does to targets is not known\n6 GO HOME: what it does to targets is not known\n");
   EXPECT_EQ(parse_program(krl, "DEF m()\r\nPTP {A1 1,A2 2,A3 3,A4 4,A5 5,A6 6}\r\nEND\r\n", "m.src").targets[0].line,
             2u);
 }

@@ -36,7 +36,7 @@ inline ProgramSample rapid_sample() {
           "    IF x>1 MoveL Offs(p10,0,0,50),v100,fine,Gun\\WObj:=Table;\r\n"
           "    MoveC row{1}, [[7,8,9], [0.5,0.5,-0.5,0.5], [1,2,3,0], none],v100,fine,Gun\\WObj:=Table;\r\n"
           "    MoveL here,v100,fine,Gun;\r\n    MoveL elsewhere,v100,fine,Gun;\r\n"
-          "    here:=CRobT();\r\n    p10.trans.x:=p10.trans.x+5;\r\n"
+          "    here:=CRobT();\r\n    here.trans.x:=here.trans.x+5;\r\n"
           "    MoveL [[x,8,9],[1,0,0,0],[0,0,0,0],none],v100,fine,Gun;\r\n"
           "  ENDPROC\r\nENDMODULE\r\n"};
 }

@@ -34,19 +34,21 @@ class FanucReader final : private StatementReader {
     program_.stamp_at = text_.tokens[moves].end;
     for (std::size_t i = positions; i < text_.tokens.size();)
       i = word(i) == "p" && text_.is(i + 1, '[') ? position(i) : i + 1;
-    const std::size_t first = text_.tokens[moves].end, last = text_.text.find("/POS", first);
-    if (last != std::string_view::npos)
-      instructions(text_.text.substr(first, last - first), text_.tokens[moves].line + 1);
-    std::vector<bool> keep(program_.targets.size(), true);
+    header(moves);
+    const std::size_t first = text_.tokens[moves].end, last = text_.text.rfind('/', text_.tokens[positions].begin);
+    instructions(text_.text.substr(first, last - first));
     for (const std::size_t k : displaced_)  // for moves that add a register to it, a literal is no target
       if (plain_.count(k) == 0) relative_.insert(k);
     for (ProgramStep& step : steps_)
       if (step.target && relative_.count(*step.target) != 0) step.target.reset();
-    for (const std::size_t k : relative_) keep[k] = false;
+    for (const std::size_t k : relative_) {
+      remark(program_.targets[k].line, program_.targets[k].name, "moves use it as an increment or with an offset");
+      changed_.insert(k);
+    }
     solve();
     for (ProgramStep& step : steps_) compare_frames(step);
     for (const std::size_t k : changed_) program_.targets[k].numbers.clear();
-    use_targets(text_, steps_, keep, program_);
+    use_targets(text_, steps_, std::vector<bool>(program_.targets.size(), true), program_);
   }
 
  private:
@@ -184,20 +186,33 @@ class FanucReader final : private StatementReader {
     target.configuration_numbers = std::move(ranges);
   }
 
+  // What applications say in front of the instructions. Names in no table concern what is no target.
+  void header(std::size_t end) {
+    for (std::size_t i = 0; i + 2 < end; ++i) {
+      if (!text_.is_word(i) || !text_.is(i + 1, ':')) continue;
+      const std::string name = word(i), value = lower_case(text_.at(i + 2));
+      if (statements_.find(name, value).kind != StatementClass::unknown)
+        apply(text_.tokens[i].line, name, value, excerpt(text_, i, i + 3));
+    }
+  }
+
+  // the line of a byte
+  std::size_t line_at(const char* byte) const {
+    const auto at = static_cast<std::size_t>(byte - text_.text.data());
+    return std::lower_bound(text_.tokens.begin(), text_.tokens.end() - 1, at,
+                            [](const ProgramToken& token, std::size_t b) { return token.end <= b; })
+        ->line;
+  }
+
   //    1:J P[1] 100% FINE    ;
-  void instructions(std::string_view text, std::size_t line) {
+  void instructions(std::string_view text) {
     while (!text.empty()) {
       std::size_t end = text.find(';');
       if (end == std::string_view::npos) end = text.size() - 1;
       std::string_view instruction = text.substr(0, end + 1);
       text.remove_prefix(end + 1);
-      while (!instruction.empty() && (instruction.front() == ' ' || instruction.front() == '\t' ||
-                                      instruction.front() == '\r' || instruction.front() == '\n')) {
-        line += instruction.front() == '\n' ? 1 : 0;
-        instruction.remove_prefix(1);
-      }
-      const std::size_t at = line;
-      for (const char c : instruction) line += c == '\n' ? 1 : 0;
+      while (!instruction.empty() && is_blank(instruction.front())) instruction.remove_prefix(1);
+      const std::size_t at = line_at(instruction.data());
       const std::size_t colon = instruction.find_first_not_of("0123456789 \t");
       if (instruction.empty()) continue;
       if (colon == std::string_view::npos || instruction[colon] != ':') {
@@ -462,34 +477,28 @@ class FanucReader final : private StatementReader {
         listed("a position register");
       } else if (found == known_.end()) {
         stop({});
-        listed("no position of this file");
+        const bool number = text[first] >= '0' && text[first] <= '9';
+        listed(number ? "no position of this file" : "computed, not a literal");
+        if (number) continue;
+        for (const auto& [name, k] : known_) {  // P[R[n]]: any of them
+          ProgramStep step{k == none ? std::nullopt : std::optional(k), {}, {}, kind, true};
+          step.point = point;
+          add_step(steps_, step);
+        }
       } else {
         stop(found->second == none ? std::nullopt : std::optional(found->second));
       }
       options = close;
     }
-    const std::string rest = lower_case(text.substr((std::min)(options, text.size())));
-    const bool displaced = rest.find("offset") != std::string::npos;
-    if (displaced) listed("an offset that a register adds");
-    for (std::size_t s = first_step; s < steps_.size(); ++s)
-      if (steps_[s].target) (displaced ? displaced_ : plain_).insert(*steps_[s].target);
-    const std::string increment = " inc";  // not the beginning of a longer word
-    std::size_t at = rest.find(increment);
-    while (at != std::string::npos && at + increment.size() < rest.size() &&
-           is_word_character(rest[at + increment.size()]))
-      at = rest.find(increment, at + 1);
-    if (at != std::string::npos) {
-      listed("a relative move");
-      if (!steps_.empty()) incremental(steps_.back());
-    }
-    further_options(without_brackets(rest), first_step, line, text);
+    move_options(without_brackets(lower_case(text.substr((std::min)(options, text.size())))), first_step, line, text);
     jump(text);
   }
 
   // Options behind the speed. Of those that are not known nobody knows where the move ends.
-  void further_options(const std::string& rest, std::size_t first_step, std::size_t line, std::string_view text) {
+  void move_options(const std::string& rest, std::size_t first_step, std::size_t line, std::string_view text) {
     static const auto options = words_of(fanuc_move_options);
     const std::size_t last_step = steps_.size();
+    bool displaced = false, relative = false;
     for (std::size_t i = 0; i < rest.size();) {
       if (!is_word_character(rest[i]) || (rest[i] >= '0' && rest[i] <= '9')) {
         ++i;
@@ -509,9 +518,18 @@ class FanucReader final : private StatementReader {
         continue;
       }
       while (!option.empty() && option.back() >= '0' && option.back() <= '9') option.pop_back();
-      if (options.count(option) != 0 || option == "inc" || option.find("offset") != std::string::npos) continue;
-      refuse_steps(first_step, last_step,
-                   message("line ", line, ", ", excerpt(text), ": ", option, " is no option that is known"));
+      const bool offset = option.find("offset") != std::string::npos, increment = option == "inc";
+      displaced = displaced || offset;
+      relative = relative || increment;
+      if (options.count(option) == 0 && !offset && !increment)
+        refuse_steps(first_step, last_step,
+                     message("line ", line, ", ", excerpt(text), ": ", option, " is no option that is known"));
+    }
+    if (displaced) remark(line, excerpt(text), "an offset that a register adds");
+    if (relative) remark(line, excerpt(text), "a relative move");
+    for (std::size_t s = first_step; s < last_step; ++s) {
+      if (steps_[s].target) (displaced ? displaced_ : plain_).insert(*steps_[s].target);
+      if (relative) incremental(steps_[s]);
     }
   }
 
@@ -542,7 +560,7 @@ class FanucReader final : private StatementReader {
   std::map<std::string, std::size_t> known_{};   // index of its target
   std::set<std::size_t> relative_{};             // targets of relative moves
   std::set<std::size_t> displaced_{}, plain_{};  // targets of moves that add an offset, and of others
-  std::set<std::size_t> changed_{};              // targets that instructions change
+  std::set<std::size_t> changed_{};              // targets that stay, and are listed
   std::set<std::string> assumed_{};              // harmless names that users state
   int opened_ = 0;                               // conditions in one instruction
 };

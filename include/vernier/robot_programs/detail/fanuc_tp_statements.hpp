@@ -17,8 +17,8 @@ inline constexpr std::string_view fanuc_harmless =
     "message rsr joint_max_speed linear_max_speed payload error_prog resume_prog maint_prog vr $waittmout $waitrelmt "
     "$mcr.$genoverride";
 
-/// Other instructions. Harmless ones have exactly this rest: `#` is a number or register, `?` a condition, `..`
-/// anything; what stands in brackets and quotes is left out.
+/// Other instructions, and what applications state in front of them. Harmless ones have exactly this rest: `#` is a
+/// number or register, `?` a condition, `..` anything; what stands in brackets and quotes is left out.
 inline constexpr ProgramStatement fanuc_statements[] = {
     {"wait", "#(sec)", StatementClass::harmless},
     {"wait", "?", StatementClass::harmless},
@@ -63,6 +63,10 @@ inline constexpr ProgramStatement fanuc_statements[] = {
     {"offset", "condition pr[]..", StatementClass::harmless},
     {"tool_offset", "condition pr[]..", StatementClass::harmless},
     {"voffset", "condition vr[]..", StatementClass::harmless},
+    {"line_track_schedule_number", "0", StatementClass::harmless},
+    {"line_track_schedule_number", "*", StatementClass::voids, ProgramState::tracking},
+    {"enable_singularity_avoidance", "true", StatementClass::voids, ProgramState::orientation},
+    {"pltz_mode_enable", "true", StatementClass::voids, ProgramState::everything},
     {"uframe", "", StatementClass::voids, ProgramState::frame_data},
     {"utool", "", StatementClass::voids, ProgramState::frame_data},
     {"softfloat", "end", StatementClass::ends, ProgramState::following},

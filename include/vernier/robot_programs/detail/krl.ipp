@@ -61,6 +61,7 @@ class KrlReader final : private StatementReader {
     Frames frames{};
     bool moves = true;       // whether it is a move
     bool parameter = false;  // of its routine
+    std::size_t scope = 0;
   };
   using FrameData = std::pair<bool, std::string>;  // whether of a tool; number, empty where it is computed
   struct Component {
@@ -72,7 +73,7 @@ class KrlReader final : private StatementReader {
   struct FlangeData {
     std::string tool{}, base{};
     bool external = false;
-    std::size_t routine = 0;  // whose it is; 0: of a data list
+    std::size_t scope = 0;  // whose it is; 0: of a data list
   };
 
   std::size_t line_of(std::size_t i) const { return text_.tokens[i].line; }
@@ -126,11 +127,12 @@ class KrlReader final : private StatementReader {
   }
 
   // the names of a routine's parameters, whose head is at token i
-  void find_parameters(std::size_t i) {
-    parameters_.clear();
+  std::set<std::string> parameters(std::size_t i) const {
+    std::set<std::string> out;
     while (!text_.is_line_end(i) && !text_.is(i, '(')) ++i;
     for (; !text_.is_line_end(i) && !text_.is(i, ')'); ++i)
-      if (text_.is_word(i) && !text_.is(i - 1, ':')) parameters_.insert(word(i));
+      if (text_.is_word(i) && !text_.is(i - 1, ':')) out.insert(word(i));
+    return out;
   }
 
   void line(std::size_t i, std::size_t end) {
@@ -149,20 +151,20 @@ class KrlReader final : private StatementReader {
     if (first == "def" || first == "deffct") {
       flow_.begin(routine_name(i), false);
       break_order();
-      find_parameters(i);
+      begin_scope(parameters(i));
       act_.clear();
       depth_ = 0;
       data_ = false;
-      ++routine_;
       return;
     }
     if (first == "defdat") {
       data_ = true;
-      parameters_.clear();
+      end_scope();
       return;
     }
     if (first == "end" || first == "endfct" || first == "enddat") {
       if (first != "enddat") flow_.end();
+      end_scope();
       return;
     }
     static constexpr std::array<std::string_view, 4> types{"e6pos", "pos", "e6axis", "axis"};
@@ -170,7 +172,8 @@ class KrlReader final : private StatementReader {
       for (std::size_t k = i + 1; k < end;) {  // names, the last one perhaps with a value
         const std::string name = word(k);
         if (name.empty()) break;
-        typed_.insert(name);
+        const bool of_file = scope_ == 0 || (i > begin && word(i - 1) == "global");
+        of_file ? static_cast<void>(typed_.insert(name)) : declare(name);
         std::size_t next = k + 1;
         if (text_.is(next, '[')) next = behind_brackets(text_, next, end);
         if (text_.is(next, '=')) {
@@ -184,7 +187,14 @@ class KrlReader final : private StatementReader {
     if (first == "fdat" && text_.is_word(i + 1) && text_.is(i + 2, '=')) return fdat(word(i + 1), i + 3, end);
     if (first == "ldat" && text_.is_word(i + 1) && text_.is(i + 2, '=')) return ldat(i, end);
     if ((first == "interrupt" || first == "trigger") && !text_.is(i + 1, '(')) return at_any_time(i, end);
-    if (i > begin || (data_ && text_.is_word(i) && text_.is_word(i + 1))) return calls(i + 1, end);  // a declaration
+    if (i > begin || (data_ && text_.is_word(i) && text_.is_word(i + 1))) {  // a declaration
+      for (std::size_t k = i + 1; k < end && text_.is_word(k);) {
+        declare(word(k));
+        k = text_.is(k + 1, '[') ? behind_brackets(text_, k + 1, end) : k + 1;
+        k = text_.is(k, ',') ? k + 1 : end;
+      }
+      return calls(i + 1, end);
+    }
     if (structure(i, end, first)) {
       act_.clear();
       return;
@@ -244,9 +254,8 @@ class KrlReader final : private StatementReader {
       if (name == "tool_data" || name == "base_data") changed_frames_.insert({name == "tool_data", index(k + 1)});
       if (name == "$tool" || name == "$base")
         flow_.set(name == "$tool" ? ProgramState::tool : ProgramState::workobject, {"?", {}, line_of(k)});
-      if (!name.empty() && parameters_.count(name) == 0)
-        uses_.push_back({{k, k + 1}, i, TargetMove::unknown, ProgramStep::no_point, {{}, {}, why}, false});
     }
+    given(i, i + 1, end, why);
   }
 
   // calls of functions in an expression
@@ -343,9 +352,9 @@ class KrlReader final : private StatementReader {
 
   // A routine's parameters are no variables of the file.
   void changed(const std::string& name, std::size_t i, std::size_t end) {
-    if (parameters_.count(name) != 0) return;
-    changes_.push_back({name, {i, end}});
-    changed_.insert(name);
+    if (is_parameter(name)) return;
+    changes_.push_back({scoped(name, scope_), {i, end}});
+    changed_.insert(scoped(name, scope_));
   }
 
   // name = value, at tokens from i to end
@@ -360,33 +369,46 @@ class KrlReader final : private StatementReader {
     } else if (name == "$tool" || name == "$base") {
       flow_.set(tool ? ProgramState::tool : ProgramState::workobject, {frame(tool, at, i, end), {}, line_of(at)});
     } else if (tool || base) {
-      frame_data(tool, index(at + 1), i, end);
+      frame_data(tool, index(at + 1), at, i, end);
     } else if (!text_.is(i, '{') || behind_brackets(text_, i, end) != end) {
       changed(name, at, end);
-    } else if (parameters_.count(name) != 0) {
+    } else if (is_parameter(name)) {
       remark(line_of(at), excerpt(text_, at, end), "a parameter");
     } else {
       const std::size_t before = program_.targets.size();
       target(name, i, end);
-      for (std::size_t k = before; k < program_.targets.size(); ++k) names_[name].push_back(k);
+      for (std::size_t k = before; k < program_.targets.size(); ++k) names_[scoped(name, scope_)].push_back(k);
     }
   }
 
   // TOOL_DATA[n] = {..}, at tokens from i to end. One that is not always set, or to several values, is not known.
-  void frame_data(bool tool, const std::string& number, std::size_t i, std::size_t end) {
+  void frame_data(bool tool, const std::string& number, std::size_t at, std::size_t i, std::size_t end) {
     auto& frames = tool ? program_.tools : program_.workobjects;
     const auto parts = text_.is(i, '{') ? components(i, end) : std::vector<Component>{};
     const std::optional<Isometry3> frame = i == end ? frame_of(parts) : std::nullopt;
     const auto stated = frames.find(number);
     if (!frame || number.empty() || depth_ > 0 || (stated != frames.end() && !stated->second.isApprox(*frame, 0))) {
       changed_frames_.insert({tool, number});
-      return;
+      return made_of(at, i, end);
     }
     frames[number] = *frame;
     if (data_)
       data_frames_.insert({tool, number});
     else
       flow_.set_data(data_name({tool, number}), {"stated", {}, line_of(i - 1)});
+  }
+
+  // With other numbers of the targets at tokens from i to end, a frame would be another one.
+  void made_of(std::size_t at, std::size_t i, std::size_t end) {
+    given(at, i, end, message("line ", line_of(at), ", ", excerpt(text_, at, end), ": a frame is made of it"));
+  }
+
+  // targets at tokens from i to end, which stay as they are
+  void given(std::size_t at, std::size_t i, std::size_t end, const std::string& why) {
+    for (; i < end; ++i)
+      if (text_.is_word(i) && !is_parameter(word(i)))
+        uses_.push_back(
+            {{i, i + 1}, at, TargetMove::unknown, ProgramStep::no_point, {{}, {}, why}, false, false, scope_});
   }
 
   static std::string data_name(const FrameData& data) { return (data.first ? "tool " : "base ") + data.second; }
@@ -439,7 +461,10 @@ class KrlReader final : private StatementReader {
     }
     const std::string source = word(i);
     if (source == "$nullframe" && i + 1 == end) return "0";
-    if (source != (tool ? "tool_data" : "base_data") || behind_brackets(text_, i + 1, end) != end) return "?";
+    if (source != (tool ? "tool_data" : "base_data") || behind_brackets(text_, i + 1, end) != end) {
+      made_of(at, i, end);
+      return "?";
+    }
     return numbered(tool, index(i + 1));
   }
 
@@ -506,7 +531,7 @@ class KrlReader final : private StatementReader {
       set(ProgramState::workobject, "?");
     } else if (command == "frames" || command == "ptp_params" || command == "cp_params" || command == "cp_dat") {
       const auto data = flange_data_.find(act_["fdat_act"]);
-      const bool known = data != flange_data_.end() && !data->second.external && here(data->second.routine);
+      const bool known = data != flange_data_.end() && !data->second.external && here(data->second.scope);
       if (command != "cp_dat") {
         const auto number = [&](bool tool) {
           const std::string name = known ? (tool ? data->second.tool : data->second.base) : "";
@@ -528,7 +553,7 @@ class KrlReader final : private StatementReader {
   }
 
   // Data of a routine are of no other one, those of a data list of all.
-  bool here(std::size_t routine) const { return routine == 0 || routine == routine_; }
+  bool here(std::size_t scope) const { return scope == 0 || scope == scope_; }
 
   // LDAT name={.., ORI_TYP #VAR}: whether linear moves with it reach their orientation
   void ldat(std::size_t i, std::size_t end) {
@@ -545,7 +570,7 @@ class KrlReader final : private StatementReader {
     const std::string name = word(i + 1);
     const bool again = !declared_ldat_.insert(name).second;
     if (kept && !again && k == end && changed_data_.count(name) == 0)
-      kept_orientation_[name] = data_ ? 0 : routine_;
+      kept_orientation_[name] = scope_;
     else
       kept_orientation_.erase(name);
   }
@@ -553,7 +578,7 @@ class KrlReader final : private StatementReader {
   void fdat(const std::string& name, std::size_t i, std::size_t end) {
     if (!text_.is(i, '{')) return;
     FlangeData data;
-    data.routine = data_ ? 0 : routine_;
+    data.scope = scope_;
     for (const Component& part : components(i, end)) {
       const std::string text = part.number ? message(static_cast<long long>(std::clamp(*part.number, -1e9, 1e9))) : "?";
       if (part.name == "tool_no") data.tool = text;
@@ -671,7 +696,8 @@ class KrlReader final : private StatementReader {
       out.joints = ProgramTarget{}.joints;
       out.pose = *frame_of(parts);
       const Component *status = find(parts, "s"), *turn = find(parts, "t");
-      if (status != nullptr && turn != nullptr) {
+      if ((status == nullptr) != (turn == nullptr)) return refuse("S without T, or T without S");
+      if (status != nullptr) {
         for (const Component* part : {status, turn}) {
           if (!part->number || !(*part->number >= 0 && *part->number < 1024) ||
               !same_value(*part->number, std::floor(*part->number)))
@@ -696,25 +722,42 @@ class KrlReader final : private StatementReader {
     const TargetMove kind = name.find("ptp") != std::string::npos ? TargetMove::joint : TargetMove::linear;
     const int targets = name.find("circ") != std::string::npos ? 2 : 1;
     calls(i + 1, end);
-    const Frames frames = with(i, end);
+    Frames frames = with(i, end);
+    if (frames.unknown.empty()) frames.unknown = other_argument(i, targets, end);
     const std::size_t point = flow_.point();
     std::size_t first = i + 1;
     for (int a = 0; a < targets && first < end; ++a) {
-      std::size_t last = first;
-      while (last < end && !text_.is(last, ',') && (last == first || !is_option(last)))
-        last = text_.is(last, '{') || text_.is(last, '(') || text_.is(last, '[') ? behind_brackets(text_, last, end)
-                                                                                 : last + 1;
+      const std::size_t last = argument_end(first, end);
       if (relative) {
         break_order();
         remark(line_of(i), excerpt(text_, i, last), "a relative move");
       } else {
         if (text_.is(first, '{') && behind_brackets(text_, first, end) == last) target({}, first, end);
-        uses_.push_back({{first, last}, i, kind, point, frames, true, parameters_.count(word(first)) != 0});
+        uses_.push_back({{first, last}, i, kind, point, frames, true, is_parameter(word(first)), scope_});
       }
       first = last + 1;
     }
     act_.clear();
     return true;
+  }
+
+  // the end of a move's argument that begins at token i
+  std::size_t argument_end(std::size_t i, std::size_t end) const {
+    for (std::size_t k = i; k < end;) {
+      if (text_.is(k, ',') || (k > i && is_option(k))) return k;
+      k = text_.is(k, '{') || text_.is(k, '(') || text_.is(k, '[') ? behind_brackets(text_, k, end) : k + 1;
+    }
+    return end;
+  }
+
+  // Of what follows the targets of a move other than blending and CA, nobody knows where it ends; empty: nothing.
+  std::string other_argument(std::size_t i, int targets, std::size_t end) const {
+    std::size_t k = i;
+    for (; targets > 0 && k < end; --targets) k = argument_end(k + 1, end);
+    while (k < end && (text_.is(k, ',') || is_blending(k) || word(k) == "ca"))
+      k = word(k) == "ca" ? argument_end(k + 1, end) : k + 1;
+    if (k >= end || is_option(k)) return {};
+    return message("line ", line_of(i), ", ", excerpt(text_, i, end), ": what it does to targets is not known");
   }
 
   bool is_blending(std::size_t i) const {
@@ -740,7 +783,8 @@ class KrlReader final : private StatementReader {
     const bool name_alone =
         text_.is_word(first) &&
         (last == first + 1 || (text_.is(first + 1, '[') && behind_brackets(text_, first + 1, last) == last));
-    const auto named = names_.find(word(first));
+    const std::string name = scoped(word(first), use.scope);
+    const auto named = names_.find(name);
     if (name_alone && !use.parameter && named != names_.end() && !named->second.empty()) {
       step.element = named->second.size() > 1;
       for (const std::size_t k : named->second) {
@@ -752,7 +796,7 @@ class KrlReader final : private StatementReader {
     if (!use.moves) return;
     add_step(steps_, {{}, {}, {}, use.move});
     if (text_.is(first, '{') && behind_brackets(text_, first, last) == last) return;  // refused before
-    const bool computed = !name_alone || changed_.count(word(first)) != 0;
+    const bool computed = !name_alone || changed_.count(name) != 0;
     program_.uncorrected.push_back({text_.tokens[use.instruction].line, excerpt(text_, use.instruction, last),
                                     use.parameter ? "a parameter"
                                     : computed    ? "computed, not a literal"
@@ -783,7 +827,7 @@ class KrlReader final : private StatementReader {
       if (has[k] && !moves[k]) uses(k, ProgramStep::no_point);
   }
 
-  std::set<std::string> typed_{};
+  std::set<std::string> typed_{};  // of the file: another one may use them
   std::map<std::string, std::vector<std::size_t>> names_{};
   std::map<std::size_t, std::size_t> literals_{};  // target by its first token
   std::map<std::string, FlangeData> flange_data_{};
@@ -793,14 +837,12 @@ class KrlReader final : private StatementReader {
   std::set<FrameData> data_frames_{};                             // of a data list
   std::vector<std::pair<FrameData, std::size_t>> used_frames_{};  // and the point of the program's flow
   std::set<std::string> routines_{};                              // of this file
-  std::set<std::string> parameters_{};                            // of the present routine
   std::set<std::string> changed_data_{};                          // names whose values may change after they are stated
-  std::map<std::string, std::size_t> kept_orientation_{};         // LDAT with which orientations are reached; routine
+  std::map<std::string, std::size_t> kept_orientation_{};         // LDAT with which orientations are reached; scope
   std::set<std::string> declared_ldat_{};
   std::map<std::string, std::string> act_{};  // what FDAT_ACT and LDAT_ACT are
   Frames spline_{};                           // of the present spline
   std::size_t depth_ = 0;                     // of blocks
-  std::size_t routine_ = 0;                   // number of the present one
   bool data_ = false;                         // in a data list
   int nesting_ = 0;                           // of instructions in one line
   std::vector<Use> uses_{};

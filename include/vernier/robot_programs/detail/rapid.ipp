@@ -57,7 +57,7 @@ class RapidReader final : private StatementReader {
     bool parameter = false;  // whether its target is a parameter of the routine
     bool moves = true;       // whether it is a move
     bool constants = true;   // whether it concerns targets that no statement can change
-    std::size_t routine = 0;
+    std::size_t scope = 0;
   };
   struct Change {  // of a variable
     std::size_t line;
@@ -106,11 +106,6 @@ class RapidReader final : private StatementReader {
     return out;
   }
 
-  // A variable of a routine hides that of the module.
-  std::string scoped(const std::string& name, std::size_t routine) const {
-    return locals_[routine].count(name) != 0 ? message(name, '@', routine) : name;
-  }
-
   // the token behind the name of a routine and its parameters
   std::size_t behind_parameters(std::size_t name) const {
     const bool closed = text_.is(name + 1, '(') && text_.tokens[name + 1].partner != 0;
@@ -152,7 +147,8 @@ class RapidReader final : private StatementReader {
       flow_.label(name);
       return i + 2;
     }
-    if (is_move(name) && !text_.is(i + 1, '(') && !text_.is(i + 1, '.')) return move(i);
+    const bool own = routines_.count(name) != 0;  // a routine of this file, whatever the table says
+    if (is_move(name) && !own && !text_.is(i + 1, '(') && !text_.is(i + 1, '.')) return move(i);
     other(i, end, name);
     return end;
   }
@@ -172,8 +168,7 @@ class RapidReader final : private StatementReader {
     if (name == "proc" || name == "func" || name == "trap") return routine(i, name);
     if (name == "endproc" || name == "endfunc" || name == "endtrap") {
       flow_.end();
-      parameters_.clear();
-      routine_ = 0;
+      end_scope();
       in_main_ = false;
       return i + 1;
     }
@@ -251,12 +246,11 @@ class RapidReader final : private StatementReader {
     in_main_ = word(name) == "main";
     if (in_main_) flow_.label(main_begins);
     break_order();
-    parameters_.clear();
     const std::size_t end = behind_parameters(name);
+    std::set<std::string> parameters;
     for (std::size_t k = name + 1; k + 1 < end; ++k)
-      if (text_.is_word(k) && !text_.is_word(k + 1)) parameters_.insert(word(k));
-    routine_ = locals_.size();
-    locals_.push_back(parameters_);
+      if (text_.is_word(k) && !text_.is_word(k + 1)) parameters.insert(word(k));
+    begin_scope(parameters);
     return end;
   }
 
@@ -283,12 +277,11 @@ class RapidReader final : private StatementReader {
   // name := value, its sign at k
   void assignment(std::size_t i, std::size_t k, std::size_t end) {
     const std::string name = word(i);
-    if (k == i + 1 && text_.is(k + 2, '[')) {
-      assigned_.insert(name);
-      literal(k + 2, name);
-    } else {
-      changes_.push_back({line(i), {i, end}, scoped(name, routine_)});
-    }
+    const std::size_t targets = program_.targets.size(), refused = refused_.size();
+    const bool whole = k == i + 1 && text_.is(k + 2, '[') && literal(k + 2, name) == end;
+    assigned_.insert(name);
+    if (!whole || program_.targets.size() == targets || refused_.size() != refused)
+      changes_.push_back({line(i), {i, end}, scoped(name, scope_)});
     calls(k + 2, end);
   }
 
@@ -330,7 +323,7 @@ class RapidReader final : private StatementReader {
     Move found;
     found.token = i;
     found.moves = false;
-    found.routine = routine_;
+    found.scope = scope_;
     found.constants = constants;
     found.unknown = why;
     for (std::size_t k = i + 1; k < end;) {
@@ -401,9 +394,9 @@ class RapidReader final : private StatementReader {
     const std::string type = word(i + 1);
     if (!text_.is_word(i + 2)) return i + 1;
     const std::string name = word(i + 2);
-    if (routine_ > 0) locals_[routine_].insert(name);
+    declare(name);
     if (word(i) == "const") {
-      constants_.insert(scoped(name, routine_));
+      constants_.insert(scoped(name, scope_));
       constant_names_.insert(name);
     } else {
       variable_names_.insert(name);
@@ -415,11 +408,11 @@ class RapidReader final : private StatementReader {
     const bool brackets = value && text_.is(k, '[');
     const std::size_t line = text_.tokens[i].line;
     if (type == "robtarget" || type == "jointtarget") {
-      names_.try_emplace(scoped(name, routine_));
+      names_.try_emplace(scoped(name, scope_));
       if (brackets) {
-        const std::size_t before = program_.targets.size();
+        const std::size_t before = program_.targets.size() + refused_.size();
         const std::size_t end = literal(k, name);
-        if (program_.targets.size() == before && refused_line_ != line)
+        if (program_.targets.size() + refused_.size() == before)
           program_.uncorrected.push_back({line, excerpt(text_, i + 1, end), "no literal of this type"});
         return end;
       }
@@ -507,7 +500,7 @@ class RapidReader final : private StatementReader {
       return;
     }
     const auto refuse = [&](const char* reason) {
-      refused_line_ = value.line;
+      refused_.insert(value.token);
       program_.uncorrected.push_back(
           {value.line, excerpt(text_.text.substr(value.range.begin, value.range.end - value.range.begin)), reason});
     };
@@ -532,15 +525,15 @@ class RapidReader final : private StatementReader {
       target.pose = *found;
       for (std::size_t part = 0; part < 2; ++part)
         for (const BracketValue& number : v[part].values) target.numbers.push_back(number.range);
-      if (v[2].numbers(4))
-        for (const BracketValue& number : v[2].values) {
-          if (!(std::abs(*number.number) < 1000)) return refuse("its configuration is out of range");
-          target.configuration.push_back(static_cast<int>(std::lround(*number.number)));
-          target.configuration_numbers.push_back(number.range);
-        }
+      if (!v[2].numbers(4)) return refuse("its configuration is no literal");
+      for (const BracketValue& number : v[2].values) {
+        if (!(std::abs(*number.number) < 1000)) return refuse("its configuration is out of range");
+        target.configuration.push_back(static_cast<int>(std::lround(*number.number)));
+        target.configuration_numbers.push_back(number.range);
+      }
     }
     if (!name.empty())
-      names_[scoped(name, routine_)].push_back(program_.targets.size());
+      names_[scoped(name, scope_)].push_back(program_.targets.size());
     else
       inline_[value.token] = program_.targets.size();
     program_.targets.push_back(std::move(target));
@@ -581,13 +574,13 @@ class RapidReader final : private StatementReader {
     if (k >= text_.tokens.size()) fail_at(text_, line(i), "an instruction is not ended by ;");
     close();
     found.tool = tool_of(word(i), found.arguments);
-    if (parameters_.count(found.tool) != 0) found.tool.clear();
-    if (parameters_.count(found.workobject) != 0) found.workobject = "?";
+    if (is_parameter(found.tool)) found.tool.clear();
+    if (is_parameter(found.workobject)) found.workobject = "?";
     for (std::size_t a = 0; a < (std::min)(targets_of(word(i)), found.arguments.size()); ++a)
-      found.parameter = found.parameter || parameters_.count(word(found.arguments[a].first)) != 0;
+      found.parameter = found.parameter || is_parameter(word(found.arguments[a].first));
     calls(i + 1, k);
     found.point = flow_.point();
-    found.routine = routine_;
+    found.scope = scope_;
     const bool followed = !has_routine(word(i)) || is_followed(found);
     moves_.push_back(std::move(found));
     if (!followed) unknown(line(i), excerpt(text_, i, k));
@@ -602,13 +595,12 @@ class RapidReader final : private StatementReader {
     return routines_.count(quoted(at.first)) != 0 || assumed_.count(quoted(at.first)) != 0;
   }
 
-  // A target that the program changes stays as it is. Constants cannot change, unless a move behind would use that.
+  // A target that the program changes stays as it is.
   void changed(const Change& change) {
     const auto found = names_.find(change.variable);
     if (found == names_.end()) return;
     remark(change.line, excerpt(text_, change.expression.first, change.expression.second),
            "the program changes this target");
-    if (constants_.count(change.variable) != 0 && last_use_[change.variable] < change.expression.first) return;
     for (const std::size_t k : found->second) program_.targets[k].numbers.clear();
   }
 
@@ -648,13 +640,12 @@ class RapidReader final : private StatementReader {
         add_step(steps_, step);
         continue;
       }
-      const std::string variable = scoped(word(first), move.routine);
+      const std::string variable = scoped(word(first), move.scope);
       const auto declared = names_.find(variable);
       const bool element = text_.is(first + 1, '{');
       const std::size_t end = !move.moves ? last : element ? behind_brackets(text_, first + 1, last) : first + 1;
       if (text_.is_word(first) && end == last && declared != names_.end() && !declared->second.empty() &&
           !move.parameter && (move.constants || constants_.count(variable) == 0)) {
-        last_use_[variable] = (std::max)(last_use_[variable], move.token);
         step.element = declared->second.size() > 1;
         for (const std::size_t k : declared->second) {
           step.target = k;
@@ -664,12 +655,13 @@ class RapidReader final : private StatementReader {
       }
       if (!move.moves) continue;
       add_step(steps_, {{}, {}, {}, kind});
-      if (text_.is(first, '[')) continue;  // refused before
+      if (refused_.count(first) != 0) continue;
       remark(line(first < last ? first : move.token),
              excerpt(text_, move.token, move.token + 1) + " " + excerpt(text_, first, last),
-             !text_.is_word(first) || end != last         ? "computed, not a literal"
-             : declared == names_.end() || move.parameter ? "declared in another file, or a parameter"
-                                                          : "a variable without literal value");
+             !text_.is_word(first) || end != last ? "computed, not a literal"
+             : move.parameter                     ? "a parameter"
+             : declared == names_.end()           ? "declared in another file"
+                                                  : "a variable without literal value");
     }
   }
 
@@ -679,19 +671,15 @@ class RapidReader final : private StatementReader {
   std::set<std::string> assigned_{};  // variables
   std::vector<Move> moves_{};
   std::vector<Change> changes_{};
-  std::set<std::string> constants_{};                                                  // scoped
-  std::set<std::string> constant_names_{}, variable_names_{};                          // as they are declared
-  std::set<std::string> unstated_{};                                                   // frames that are not known
-  std::vector<std::set<std::string>> locals_ = std::vector<std::set<std::string>>(1);  // variables of each routine
-  std::size_t routine_ = 0;                                                            // the present one; 0: none
-  std::map<std::string, std::size_t> last_use_{};                                      // of variables, by tokens
-  std::set<std::string> assumed_{};                      // harmless names that users state
-  std::set<std::string, std::less<>> called_by_text_{};  // routines
+  std::set<std::string> constants_{};                          // scoped
+  std::set<std::string> constant_names_{}, variable_names_{};  // as they are declared
+  std::set<std::string> unstated_{};                           // frames that are not known
+  std::set<std::string> assumed_{};                            // harmless names that users state
+  std::set<std::string, std::less<>> called_by_text_{};        // routines
   bool in_main_ = false;
   static constexpr const char* main_begins = "main begins";  // no label has blanks
   std::map<std::string, bool> routines_{};  // of this file, and whether they may change their arguments
-  std::set<std::string> parameters_{};      // of the present routine
-  std::size_t refused_line_ = 0;
+  std::set<std::size_t> refused_{};         // first tokens of values that are no targets, and are listed
 };
 
 VERNIER_IMPL void read_rapid(std::string_view text, const std::string& name, const std::vector<std::string>& assumed,

@@ -33,7 +33,7 @@ inline constexpr std::string_view rapid_harmless =
     "triggdatacopy triggdatareset triggequip triggint triggio triggrampao triggspeed triggstopproc tunereset "
     "tuneservo uimsgbox uimsgwrite uimsgwriteabort uishow unload unpackrawbytes velset waitai waitao waitdi waitdo "
     "waitgi waitgo waitload waitrob waitsynctask waittestandset waittime waituntil warmstart worldacclim write "
-    "writeanybin writebin writeblock writecfgdata writerawbytes writestrbin writevar wzboxdef wzcyldef wzdisable "
+    "writeanybin writebin writeblock writerawbytes writestrbin writevar wzboxdef wzcyldef wzdisable "
     "wzdoset wzenable wzfree wzhomejointdef wzlimjointdef wzlimsup wzsphdef arcrefresh camflush camgetparameter "
     "camgetresult camloadjob camreqimage camsetexposure camsetparameter camsetprogrammode camsetrunmode "
     "camstartloadjob camwaitloadjob recoverymenu setbrush setbrushfac settmsignal";
@@ -85,6 +85,7 @@ inline constexpr ProgramStatement rapid_statements[] = {
     {"setalldataval", "*", StatementClass::voids, ProgramState::everything},
     {"callbyvar", "*", StatementClass::voids, ProgramState::everything},
     {"softelbow", "*", StatementClass::voids, ProgramState::everything},
+    {"writecfgdata", "*", StatementClass::voids, ProgramState::everything},
     {"cssact", "*", StatementClass::voids, ProgramState::everything},
     {"fcact", "*", StatementClass::voids, ProgramState::everything},
     {"fcrefstart", "*", StatementClass::voids, ProgramState::everything},

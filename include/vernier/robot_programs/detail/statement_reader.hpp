@@ -6,6 +6,7 @@
 
 #include <array>
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,6 +48,24 @@ class StatementReader {
                                    const std::string& statement);
   /// The name of a frame that the text states: the one given, or that of an equal frame stated before.
   VERNIER_API std::string named_frame(ProgramState state, std::string name, const Isometry3& frame);
+  /// A routine begins; its parameters and what it declares hide variables of the file.
+  void begin_scope(const std::set<std::string>& parameters) {
+    scope_ = locals_.size();
+    locals_.push_back(parameters);
+    parameters_ = parameters;
+  }
+  /// The routine ends.
+  void end_scope() {
+    scope_ = 0;
+    parameters_.clear();
+  }
+  /// A variable is declared: of the present routine, if there is one.
+  void declare(const std::string& name) {
+    if (scope_ != 0) locals_[scope_].insert(name);
+  }
+  /// The name of a variable, which tells those of a routine from those of the file.
+  VERNIER_API std::string scoped(const std::string& name, std::size_t scope) const;
+  bool is_parameter(const std::string& name) const { return parameters_.count(name) != 0; }
   /// The order of moves ends: where the arm stands is not known.
   virtual void break_order() { add_step(steps_, {{}, {}, {}, TargetMove::unknown}); }
   /// Takes targets away; moves to them have none.
@@ -59,9 +78,12 @@ class StatementReader {
   const StatementTable& statements_;
   ProgramFlow flow_{};
   std::vector<ProgramStep> steps_{};
+  std::size_t scope_ = 0;  // of the present routine; 0: the file
 
  private:
-  std::map<std::pair<ProgramState, std::array<double, 16>>, std::string> named_{};  // frames by their numbers
+  std::vector<std::set<std::string>> locals_ = std::vector<std::set<std::string>>(1);  // of each scope
+  std::set<std::string> parameters_{};                                                 // of the present routine
+  std::map<std::pair<ProgramState, std::array<double, 16>>, std::string> named_{};     // frames by their numbers
 };
 
 }  // namespace vernier::detail

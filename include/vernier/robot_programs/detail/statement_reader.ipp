@@ -57,6 +57,10 @@ VERNIER_IMPL std::string StatementReader::named_frame(ProgramState state, std::s
   return found->second;
 }
 
+VERNIER_IMPL std::string StatementReader::scoped(const std::string& name, std::size_t scope) const {
+  return locals_[scope].count(name) != 0 ? message(name, '@', scope) : name;
+}
+
 VERNIER_IMPL void StatementReader::drop(const std::vector<bool>& dropped) {
   std::vector<std::size_t> index(dropped.size());
   std::vector<ProgramTarget> kept;

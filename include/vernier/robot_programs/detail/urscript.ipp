@@ -165,7 +165,7 @@ class UrscriptReader final : private StatementReader {
       }
       const std::string_view word = text_.at(i);
       if (begins_routine(i)) {
-        flow_.begin(std::string(text_.at(i + 1)), word == "thread");
+        flow_.begin(std::string(text_.at(i + 1)), word != "def");
         break_order();
         routines.push_back(true);
         const bool closed = text_.is(i + 2, '(') && text_.tokens[i + 2].partner != 0;
@@ -200,22 +200,33 @@ class UrscriptReader final : private StatementReader {
 
   // whether a statement begins with the name of a variable: name = , name[..] = , name.member
   bool assigns(std::size_t i) const {
-    std::size_t k = i + 1;
-    while (text_.is(k, '[')) k = behind_brackets(text_, k, text_.tokens.size());
-    return text_.is(k, '=') || text_.is(k, '.');
+    const std::size_t k = behind_name(i);
+    return text_.is(k, '=') || text_.is(k, '(');
+  }
+
+  // the token behind name[..].member
+  std::size_t behind_name(std::size_t i) const {
+    for (++i;;) {
+      if (text_.is(i, '['))
+        i = behind_brackets(text_, i, text_.tokens.size());
+      else if (text_.is(i, '.') && text_.is_word(i + 1))
+        i += 2;
+      else
+        return i;
+    }
   }
 
   void call(std::size_t i, std::string_view word) {
     static const auto keywords = words_of("not and or xor elif return join kill run in");
     if (keywords.count(word) != 0 || (i > 0 && text_.is(i - 1, '.'))) return;  // a member of an object is no routine
     const std::string name(word);
-    if (word == "set_tcp") {
+    if (routines_.count(name) != 0) {
+      flow_.call(name);
+      break_order();
+    } else if (word == "set_tcp") {
       flow_.set(ProgramState::tool, {set_tcp(i), {}, line(i)});
     } else if (is_move(word)) {
       move(i);
-    } else if (routines_.count(name) != 0) {
-      flow_.call(name);
-      break_order();
     } else {
       apply(line(i), name, {}, excerpt(text_, i, behind_brackets(text_, i + 1, text_.tokens.size())));
     }
@@ -263,9 +274,7 @@ class UrscriptReader final : private StatementReader {
     for (std::size_t i = 0; i < text_.tokens.size();) {
       if (text_.is(i, '(')) ++depth;
       if (text_.is(i, ')') && depth > 0) --depth;
-      std::size_t sign = i + 1;
-      if (depth == 0 && text_.is_word(i))
-        while (text_.is(sign, '[')) sign = behind_brackets(text_, sign, text_.tokens.size());
+      const std::size_t sign = depth == 0 && text_.is_word(i) ? behind_name(i) : i + 1;
       if (changes_list(i)) assigned_[variable(i)].computed.push_back(i);
       const bool name = text_.is_word(i) && text_.is(sign, '=') && !text_.is(sign + 1, '=') && depth == 0;
       if (!name) {
@@ -274,7 +283,7 @@ class UrscriptReader final : private StatementReader {
       }
       Assigned& assigned = assigned_[variable(i)];
       names_.insert(std::string(text_.at(i)));
-      if (sign != i + 1) {  // an element
+      if (sign != i + 1) {  // an element or member
         assigned.computed.push_back(i);
         i = sign;
         continue;
@@ -417,7 +426,7 @@ class UrscriptReader final : private StatementReader {
     if (is_parameter(name)) return remark("a parameter");
     if (assigned == assigned_.end())
       return remark(names_.count(name.second) != 0 ? "not assigned in this routine" : "not assigned in this file");
-    if (assigned->second.targets.empty()) return remark("its value is computed");
+    if (assigned->second.targets.empty()) return remark("computed, not a literal");
     used_.insert(name);
     step.element = assigned->second.targets.size() > 1 || !assigned->second.computed.empty();
     for (const std::size_t k : assigned->second.targets) {

@@ -93,8 +93,7 @@ void print_camera(const support::CameraJoints& found) {
              found.converged ? "; they rest" : "; THEY DO NOT REST: take more images, or state --intrinsics");
   fmt::print(
       "Errors below are of single images, whose own poses err by {:.3f} mm (rms). On the board left-out images are off "
-      "by "
-      "{:.3f} mm\n\n",
+      "by {:.3f} mm\n\n",
       found.image_error * 1e3, found.camera.left_out_mean * 1e3);
 }
 
@@ -158,12 +157,10 @@ int calibrate_by_poses(support::Program& program, support::CalibrationOptions& o
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   o.csv.controller = robot.controller;
   if (o.corners.empty()) {
-    support::PoseCalibration found =
-        calibrate_with_progress(program, robot, o, [](auto&&... all) { return support::calibrate_from_poses(all...); });
+    support::PoseCalibration found = calibrate_with_progress(program, robot, o, support::calibrate_from_poses);
     return report_calibration(program, robot, o, found, nullptr);
   }
-  support::CameraJoints found = calibrate_with_progress(
-      program, robot, o, [](auto&&... all) { return support::calibrate_joints_by_camera(all...); });
+  support::CameraJoints found = calibrate_with_progress(program, robot, o, support::calibrate_joints_by_camera);
   return report_calibration(program, robot, o, found.poses, &found);
 }
 

@@ -84,7 +84,7 @@ Calibrated by_poses(const Settings& o, const vn::RobotDescription& robot, const 
           std::move(found.error_of),
           {.learned = report.train_poses,
            .assessed = report.test_poses(),
-           .rule = fmt::format("every row i with i % {} = 0, counted from 0", o.test_every),
+           .rule = found.held_out,
            .what = "poses",
            .full_model = report.chosen.key(),
            .designed = vn::ErrorStatistics::of(report.stage(vn::Stage::frames).position),

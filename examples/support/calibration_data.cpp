@@ -11,6 +11,7 @@
 
 #include "dispatch.hpp"
 #include "held_out.hpp"
+#include "held_out_rows.hpp"
 #include "report_page.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/calibration/controller_search.hpp"
@@ -26,39 +27,24 @@ namespace vn = vernier;
 namespace {
 
 /// Rows of a file to learn from and to hold out.
+/// @param name for messages
 /// @param rule becomes the choice in words
 template <int N>
 vn::Split<N> hold_out(const vn::Dataset<N>& data, const CalibrationOptions& o, const vn::SamePose& same,
-                      std::uint64_t seed, std::string& rule) {
-  using vn::Face;
-  const bool far = seed % 2 == 1;
-  rule = fmt::format("{:.3g} % of the rows, ", o.test_fraction * 100);
-  const auto region = [&](Face face, const char* which) {
-    rule += which;
-    return vn::split_region(data, {.test_fraction = o.test_fraction, .face = face}, same);
-  };
-  if (o.split == "region-x") return far ? region(Face::x_high, "largest x") : region(Face::x_low, "smallest x");
-  if (o.split == "region-z") return far ? region(Face::z_high, "largest z") : region(Face::z_low, "smallest z");
-  if (o.split == "block") {
-    const auto blocks = std::max<vn::Index>(2, std::llround(1 / o.test_fraction));
-    const auto block =
-        static_cast<vn::Index>((seed + static_cast<std::uint64_t>(blocks) - 1) % static_cast<std::uint64_t>(blocks));
-    rule = fmt::format("block {} of {} contiguous blocks of the rows", block + 1, blocks);
-    return vn::split_block(data, block, blocks, same);
+                      std::uint64_t seed, const std::string& name, std::string& rule) {
+  vn::detail::SplitRows rows;
+  if (o.split.starts_with("region")) {
+    using vn::Face;
+    const bool far = seed % 2 == 1, along_x = o.split == "region-x";
+    const Face face = along_x ? (far ? Face::x_high : Face::x_low) : (far ? Face::z_high : Face::z_low);
+    rule = fmt::format("{:.3g} % of the rows, {} {}", o.test_fraction * 100, far ? "largest" : "smallest",
+                       along_x ? 'x' : 'z');
+    rows = vn::detail::region_rows(data.positions(), {.test_fraction = o.test_fraction, .face = face});
+  } else {
+    rows = held_out_rows(data.size(), o, seed, name, "row", rule);
   }
-  if (o.split == "time") {
-    rule += "the last ones";
-    return vn::split_time(data, o.test_fraction, same);
-  }
-  if (o.split == "random") {
-    rule += fmt::format("at random, seed {}", seed);
-    return vn::split(data, {.test_fraction = o.test_fraction, .seed = seed}, same);
-  }
-  rule = fmt::format("every row i with i % {} = 0, counted from 0", o.test_every);
-  vn::Split<N> out = vn::split_every(data, o.test_every, same);
-  if (const vn::Index more = out.test.size() - (data.size() + o.test_every - 1) / o.test_every; more > 0)
-    rule += fmt::format(", and {} more at the same poses", more);
-  return out;
+  rows = whole_poses(rows, data.joints(), same, rule);
+  return {data.rows(rows.train), data.rows(rows.test)};
 }
 
 /// The poses of one reflector in a file.
@@ -87,16 +73,12 @@ vn::Split<N> split_station(const vn::Dataset<N>& file, const CalibrationOptions&
     if (out.train.size() < 2)
       throw vn::CalibrationFailure(name + ": a single row; a calibration needs many poses, and held-out ones");
     try {
-      out = hold_out(vn::Dataset<N>(out.train), o, {.joint_types = types}, seed, rule);
+      out = hold_out(vn::Dataset<N>(out.train), o, {.joint_types = types}, seed, name, rule);
     } catch (const std::invalid_argument& error) {
       throw vn::CalibrationFailure(name + ": " + error.what());
     }
   }
-  const vn::Index n = out.train.size();
-  if (o.train_rows > n)
-    throw vn::CalibrationFailure(
-        fmt::format("{}: --train asks for {} rows, there are {} to learn from", name, o.train_rows, n));
-  if (o.train_rows > 0) out.train = vn::random_subset(out.train, o.train_rows, seed);
+  if (o.train_rows > 0) out.train = out.train.rows(training_rows(out.train.size(), o, seed, name, "rows"));
   return out;
 }
 

@@ -51,53 +51,6 @@ Json frames_json(const std::vector<std::string>& names, const std::vector<vn::Is
   return out;
 }
 
-Json camera_report_json(const vn::CameraReport& report) {
-  const bool on_flange = report.mount == vn::CameraMount::flange;
-  Json out{{"camera_mount", on_flange ? "flange" : "fixed"},
-           {"mean_mm", report.mean * 1e3},
-           {"left_out_mean_mm", report.left_out_mean * 1e3},
-           {"left_out_max_mm", report.left_out_max * 1e3},
-           {"choices_repeated", report.choices_repeated},
-           {"pixel_sigma_px", report.pixel_sigma},
-           {"ambiguous_views", report.ambiguous},
-           {"downweighted_corners", report.downweighted},
-           {"board_scale", report.board_scale},
-           {"board_scale_std", report.board_scale_std},
-           {"board_bend_mm", {report.board_bend(0) * 1e3, report.board_bend(1) * 1e3, report.board_bend(2) * 1e3}},
-           {"without_row", report.without_row},
-           {"without_corners", report.without_corners}};
-  out[on_flange ? "base_T_board" : "base_T_camera"] =
-      frames_json(on_flange ? report.board_names : report.camera_names, report.in_base, report.in_base_std);
-  out[on_flange ? "flange_T_camera" : "flange_T_board"] =
-      frames_json(on_flange ? report.camera_names : report.board_names, report.in_flange, report.in_flange_std);
-  for (std::size_t c = 0; c < report.cameras.size(); ++c) {
-    Json one{{"name", report.camera_names[c]}, {"intrinsics", vn::camera_to_json(report.cameras[c])}};
-    for (vn::Index k = 0; k < vn::Camera::num_parameters; ++k)
-      one["std"][vn::Camera::names[static_cast<std::size_t>(k)]] = report.camera_std[c](k);
-    out["cameras"].push_back(std::move(one));
-  }
-  for (const vn::ImageError& image : report.images)
-    out["images"].push_back({{"image", image.image},
-                             {"camera", report.camera_names[static_cast<std::size_t>(image.camera)]},
-                             {"board", report.board_names[static_cast<std::size_t>(image.board)]},
-                             {"corners", image.corners},
-                             {"rms_px", image.pixel_rms},
-                             {"mean_mm", image.board_mean * 1e3},
-                             {"left_out_mean_mm", image.left_out_mean * 1e3},
-                             {"distance_mm", image.distance * 1e3},
-                             {"tilt_deg", image.tilt * 180 / std::numbers::pi}});
-  for (const vn::CameraBlock& block : report.blocks)
-    out["decisions"].push_back({{"unknowns", block.name},
-                                {"without_mm", block.without * 1e3},
-                                {"with_mm", block.with * 1e3},
-                                {"kept", block.kept}});
-  for (const vn::CameraReport::Parameter& p : report.parameters)
-    out["parameters"].push_back({{"name", p.name},
-                                 {p.length ? "change_mm" : "change_mrad", p.change * 1e3},
-                                 {p.length ? "std_mm" : "std_mrad", p.std * 1e3}});
-  return out;
-}
-
 std::string image_table(const vn::CameraReport& report) {
   std::string out =
       fmt::format("\n  {:<24}{:>9}{:>10}{:>10}{:>14}\n", "image", "corners", "rms [px]", "mean [mm]", "left out [mm]");
@@ -288,7 +241,52 @@ std::string camera_text(const vernier::CameraReport& report) {
   return report.summary() + image_table(report) + (report.parameters.empty() ? "" : parameter_table(report));
 }
 
-Json camera_json(const vernier::CameraReport& report) { return camera_report_json(report); }
+Json camera_json(const vernier::CameraReport& report) {
+  const bool on_flange = report.mount == vn::CameraMount::flange;
+  Json out{{"camera_mount", on_flange ? "flange" : "fixed"},
+           {"mean_mm", report.mean * 1e3},
+           {"left_out_mean_mm", report.left_out_mean * 1e3},
+           {"left_out_max_mm", report.left_out_max * 1e3},
+           {"choices_repeated", report.choices_repeated},
+           {"pixel_sigma_px", report.pixel_sigma},
+           {"ambiguous_views", report.ambiguous},
+           {"downweighted_corners", report.downweighted},
+           {"board_scale", report.board_scale},
+           {"board_scale_std", report.board_scale_std},
+           {"board_bend_mm", {report.board_bend(0) * 1e3, report.board_bend(1) * 1e3, report.board_bend(2) * 1e3}},
+           {"without_row", report.without_row},
+           {"without_corners", report.without_corners}};
+  out[on_flange ? "base_T_board" : "base_T_camera"] =
+      frames_json(on_flange ? report.board_names : report.camera_names, report.in_base, report.in_base_std);
+  out[on_flange ? "flange_T_camera" : "flange_T_board"] =
+      frames_json(on_flange ? report.camera_names : report.board_names, report.in_flange, report.in_flange_std);
+  for (std::size_t c = 0; c < report.cameras.size(); ++c) {
+    Json one{{"name", report.camera_names[c]}, {"intrinsics", vn::camera_to_json(report.cameras[c])}};
+    for (vn::Index k = 0; k < vn::Camera::num_parameters; ++k)
+      one["std"][vn::Camera::names[static_cast<std::size_t>(k)]] = report.camera_std[c](k);
+    out["cameras"].push_back(std::move(one));
+  }
+  for (const vn::ImageError& image : report.images)
+    out["images"].push_back({{"image", image.image},
+                             {"camera", report.camera_names[static_cast<std::size_t>(image.camera)]},
+                             {"board", report.board_names[static_cast<std::size_t>(image.board)]},
+                             {"corners", image.corners},
+                             {"rms_px", image.pixel_rms},
+                             {"mean_mm", image.board_mean * 1e3},
+                             {"left_out_mean_mm", image.left_out_mean * 1e3},
+                             {"distance_mm", image.distance * 1e3},
+                             {"tilt_deg", image.tilt * 180 / std::numbers::pi}});
+  for (const vn::CameraBlock& block : report.blocks)
+    out["decisions"].push_back({{"unknowns", block.name},
+                                {"without_mm", block.without * 1e3},
+                                {"with_mm", block.with * 1e3},
+                                {"kept", block.kept}});
+  for (const vn::CameraReport::Parameter& p : report.parameters)
+    out["parameters"].push_back({{"name", p.name},
+                                 {p.length ? "change_mm" : "change_mrad", p.change * 1e3},
+                                 {p.length ? "std_mm" : "std_mrad", p.std * 1e3}});
+  return out;
+}
 
 void draw_cameras(const std::filesystem::path& folder, const vernier::CameraReport& report) {
   for (std::size_t c = 0; c < report.cameras.size(); ++c)

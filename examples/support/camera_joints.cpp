@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -48,8 +49,9 @@ std::vector<vn::SharedErrors> of_training(const std::vector<vn::SharedErrors>& a
 template <int N>
 CameraJoints calibrate_arm(const vn::RobotDescription& description, const CalibrationOptions& given,
                            const vn::FitOptions& fit) {
-  CalibrationOptions o = options_for(given, description);
-  o.calibrate.errors.tilt = o.calibrate.errors.drift = false;  // no errors of joint values
+  CalibrationOptions o = options_for(given, description, 1);
+  vn::ErrorModelOptions& errors = o.calibrate.errors;
+  errors.tilt = errors.straightness = errors.drift = false;  // no errors of joint values
   CameraInputs in = read_camera_inputs(o);
   in.format.controller = description.controller;
   const vn::DescribedRobot<N> robot = description.arm<N>();
@@ -63,19 +65,16 @@ CameraJoints calibrate_arm(const vn::RobotDescription& description, const Calibr
     prior = prior_of(*earlier, N);
   }
   vn::CalibrateOptions of_round = o.calibrate;
-  of_round.errors.drives = robot.drives;
-  of_round.errors.down = robot.down;
   if (prior) of_round.errors.prior = &*prior;
   of_round.remainder.on_geometry = of_round.remainder.on_error_model = false;
   of_round.keep_outliers = true;  // the loss weighs them down; the last fit names them
   of_round.fit = fit;
-  const auto split = [&](const vn::Measurements<N>& poses) { return hold_out_poses<N>(poses, o, types, fit.seed); };
   auto found = vn::calibrate_joints_by_camera(
       robot.arm, in.board, in.views, rows, in.options, [&](const vn::Measurements<N>& poses) {
         const auto calibration = vn::calibrate(robot.arm, poses, of_round);
         return vn::JointFit{calibration.errors.arm.joint_errors(), calibration.errors};
       });
-  MeasuredFiles<N> measured = split(found.poses);
+  MeasuredFiles<N> measured = hold_out_poses<N>(found.poses, o, types, fit.seed);
   measured.camera = setup_of(found.camera);
   measured.camera_error = found.camera.left_out_mean;
   double square = 0, held_out = 0;
@@ -87,7 +86,7 @@ CameraJoints calibrate_arm(const vn::RobotDescription& description, const Calibr
   const double image_error = std::sqrt(square / std::max(held_out, 1.0));
   const std::vector<vn::SharedErrors> shared =
       of_training<N>(vn::shared_errors(found.camera, rows), rows, found.camera, measured);
-  measured.covariance = [shared, common = found.camera.shared_covariance](const vn::ErrorModelEstimate& estimate) {
+  measured.covariance = [shared, common = found.camera.shared.covariance](const vn::ErrorModelEstimate& estimate) {
     return vn::covariance_with_shared_errors(estimate, shared, common);
   };
   measured.held_out += "; images held out have their share in the intrinsics";

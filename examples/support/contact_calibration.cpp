@@ -11,8 +11,8 @@
 #include "file_name.hpp"
 #include "held_out_rows.hpp"
 #include "json_file.hpp"
-#include "known_parts.hpp"
 #include "parameter_table.hpp"
+#include "pose_calibration.hpp"
 #include "report_page.hpp"
 #include "saved_model.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
@@ -178,9 +178,7 @@ vn::CalibratedRobot<N> calibrated_arm(const vn::IdentifiedByContacts<vn::DhChain
 template <int N>
 ContactCalibration identify_arm(const vn::RobotDescription& description, const CalibrationOptions& given,
                                 std::uint64_t seed) {
-  CalibrationOptions o = given;
-  const std::string held = hold_known_parts(description, o.calibrate);
-  if (!held.empty()) fmt::print("Held, because passive joints do not move by themselves: {}\n", held);
+  CalibrationOptions o = options_for(given, description, 1);
   vn::IdentifyOptions& options = o.calibrate.geometry;
   options.frames = options.tool_free() ? vn::Frames::tool : vn::Frames::none;
   const vn::SensorModel& sensors = o.calibrate.sensors;
@@ -232,8 +230,8 @@ ContactCalibration identify_arm(const vn::RobotDescription& description, const C
 
   vn::IdentifyOptions tool_alone = options;
   tool_alone.geometry = false;
-  const std::vector<vn::Contact>& assessed = out.held_out.empty() ? train : test;
-  const auto errors_by = [assessed](const vn::ArmGeometry& arm, const std::vector<vn::Contact>& touched) {
+  out.assessed = out.held_out.empty() ? train : test;
+  const auto errors_by = [](const vn::ArmGeometry& arm, const std::vector<vn::Contact>& touched) {
     std::vector<vn::ObjectErrors> errors;
     for (const vn::Contact& contact : touched) errors.push_back(vn::object_errors(arm, contact));
     return errors;
@@ -241,15 +239,11 @@ ContactCalibration identify_arm(const vn::RobotDescription& description, const C
   const auto with_its_tool = [train, tool_alone, sensors](const vn::RobotDescription& arm) {
     return vn::ArmGeometry(vn::identify_by_contacts(arm.arm<N>().arm, train, tool_alone, sensors).model.identified());
   };
-  out.designed = errors_by(with_its_tool(description), assessed);
-  out.found = errors_by(out.identified, effective(assessed));
-  out.error_of = [assessed, errors_by, with_its_tool](const vn::RobotDescription& arm) {
+  out.designed = errors_by(with_its_tool(description), out.assessed);
+  out.found = errors_by(out.identified, effective(out.assessed));
+  out.error_of = [assessed = out.assessed, errors_by, with_its_tool](const vn::RobotDescription& arm) {
     return vn::ErrorStatistics::of(touch_errors(errors_by(with_its_tool(arm), assessed)));
   };
-  for (const vn::Contact& contact : assessed) {
-    out.origins.push_back(contact.origin());
-    out.joints.push_back(contact.joints());
-  }
   if (earlier) out.inputs.push_back({earlier->file.file(), 0, earlier->file.hash()});
   for (const vn::SourceFile& file : description.files) out.inputs.push_back({file.name, 0, file.hash});
   if (o.save.empty()) return out;
@@ -286,7 +280,7 @@ vn::ReportInput page_of(const ContactCalibration& found, const CalibrationOption
                               "Touches of each object from it, wherever it is [mm]; the error of its longest known "
                               "length as the arm measures it.",
                           .head = {"object", "kind", "touches", "as designed", "identified", "error of length"}};
-  const vn::Index joints = found.joints.empty() ? 0 : found.joints.front().cols();
+  const vn::Index joints = found.nominal.joints();
   const vn::Index n = page.stages.front().position.size();
   page.poses.positions.resize(n, 3);
   page.poses.joints.resize(n, joints);
@@ -297,12 +291,12 @@ vn::ReportInput page_of(const ContactCalibration& found, const CalibrationOption
                             fmt::format("{:.3f}", found.designed[k].rms() * 1e3),
                             fmt::format("{:.3f}", one.rms() * 1e3),
                             std::isfinite(one.length_error) ? fmt::format("{:.3f}", one.length_error * 1e3) : ""});
-    const vn::RowOrigin& origin = found.origins[k];
+    const vn::RowOrigin& origin = found.assessed[k].origin();
     const int first = static_cast<int>(page.poses.files.size());
     for (const std::string& file : origin.files) page.poses.files.push_back(file_name(file));
     for (vn::Index i = 0; i < one.distances.size(); ++i, ++at) {
       page.poses.positions.row(at) = one.points.row(i);
-      page.poses.joints.row(at) = found.joints[k].row(i);
+      page.poses.joints.row(at) = found.assessed[k].joints().row(i);
       page.poses.file.push_back(first + origin.file[static_cast<std::size_t>(i)]);
       page.poses.line.push_back(origin.line[static_cast<std::size_t>(i)]);
     }

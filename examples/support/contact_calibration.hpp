@@ -28,8 +28,7 @@ struct ContactCalibration {
   vernier::Index objects = 0;                     ///< likewise of objects
   std::vector<vernier::ObjectErrors> designed{};  ///< errors at held-out objects, or at all of them, links as designed
   std::vector<vernier::ObjectErrors> found{};     ///< at the same objects, as identified
-  std::vector<vernier::RowOrigin> origins{};      ///< of their touches in files
-  std::vector<vernier::MatrixX> joints{};         ///< of their touches
+  std::vector<vernier::Contact> assessed{};       ///< these objects
   std::vector<vernier::ReportFile> inputs{};      ///< that were read
   vernier::SourceFile model{};                    ///< that was saved; without a name where none was
   /// Errors of touches at those objects by another description of the arm, its tool registered by the others [m].

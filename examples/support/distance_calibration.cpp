@@ -13,7 +13,6 @@
 #include "held_out_rows.hpp"
 #include "instances.hpp"
 #include "json_file.hpp"
-#include "known_parts.hpp"
 #include "parameter_table.hpp"
 #include "pose_calibration.hpp"
 #include "progress.hpp"
@@ -54,8 +53,8 @@ MeasuredDistances<N> read_and_split(const CalibrationOptions& o, std::span<const
       out.held_out += (f == 0 ? "the rows of " : ", ") + o.test[f];
     } else {
       try {
-        const vn::detail::SplitRows rows = vn::detail::with_whole_poses(
-            held_out_rows(all.size(), o, seed, file, "row", out.held_out), all.joints(), {.joint_types = types});
+        const vn::detail::SplitRows rows = whole_poses(held_out_rows(all.size(), o, seed, file, "row", out.held_out),
+                                                       all.joints(), {.joint_types = types}, out.held_out);
         train = all.rows(rows.train);
         out.test.push_back(all.rows(rows.test));
       } catch (const std::invalid_argument& error) {
@@ -104,10 +103,7 @@ vn::ReportInput page_of(const vn::Calibration<vn::DhChain<N>>& calibration, cons
 
 template <int N>
 int calibrate_arm(Program& program, const vn::RobotDescription& description, const CalibrationOptions& given) {
-  CalibrationOptions o = given;
-  if (description.base_known && o.distances.size() > 1) throw UsageError(known_base_of_stations);
-  const std::string held = hold_known_parts(description, o.calibrate);
-  if (!held.empty()) fmt::print("Held, because passive joints do not move by themselves: {}\n", held);
+  const CalibrationOptions o = options_for(given, description, given.distances.size());
   const vn::DescribedRobot<N> robot = description.arm<N>();
   std::optional<vn::SavedModel> earlier;
   std::optional<vn::ArmPrior> prior;
@@ -123,8 +119,6 @@ int calibrate_arm(Program& program, const vn::RobotDescription& description, con
 
   vn::CalibrateOptions options = o.calibrate;
   options.arm_name = robot.name;
-  options.errors.drives = robot.drives;
-  options.errors.down = robot.down;
   if (prior) options.errors.prior = &*prior;
   options.fit = fit;
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
@@ -167,8 +161,7 @@ int calibrate_arm(Program& program, const vn::RobotDescription& description, con
   if (o.verbose) fmt::print("\n{}", calibration.geometry.summary());
   fmt::print(
       "\nDistances from a point do not show how the base is turned about it: that stays as the start has it. For work "
-      "in "
-      "a tracker's or a cell's frame, register the model with a few poses (--model, --free base).\n");
+      "in a tracker's or a cell's frame, register the model with a few poses (--model, --free base).\n");
 
   Json json{{"robot", robot.name},
             {"train_rows", learned},

@@ -41,6 +41,14 @@ vernier::detail::SplitRows held_out_rows(vernier::Index n, const CalibrationOpti
   return vn::detail::random_rows(n, {.test_fraction = o.test_fraction, .seed = seed});
 }
 
+vernier::detail::SplitRows whole_poses(const vernier::detail::SplitRows& rows, const vernier::ConstMatrixRef& joints,
+                                       const vernier::SamePose& same, std::string& rule) {
+  vn::detail::SplitRows out = vn::detail::with_whole_poses(rows, joints, same);
+  if (out.test.size() > rows.test.size())
+    rule += fmt::format(", and {} more at the same poses", out.test.size() - rows.test.size());
+  return out;
+}
+
 std::vector<vernier::Index> training_rows(vernier::Index n, const CalibrationOptions& o, std::uint64_t seed,
                                           const std::string& file, const char* what) {
   if (o.train_rows > n)

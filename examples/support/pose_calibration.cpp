@@ -81,9 +81,6 @@ PoseCalibration calibrate_measured(const vn::RobotDescription& description, cons
   std::vector<vn::DataAudit> audits = audit_files(robot, *measured);
 
   vn::CalibrateOptions options = o.calibrate;
-  options.errors.drives = robot.drives;
-  options.errors.down = robot.down;
-  options.errors.controller = robot.controller;
   if (prior) options.errors.prior = &*prior;
   const auto search = [&](const vn::PriorObjective& objective, const vn::Box& box) {
     return search_priors(objective, box, o.priors == "ga", fit);
@@ -137,16 +134,19 @@ vernier::VectorX search_priors(const vernier::PriorObjective& objective, const v
   return best(vn::Pso{.particles = 20, .iterations = prior_generations, .positions = vn::PositionRule::clamped});
 }
 
-CalibrationOptions options_for(CalibrationOptions o, const vn::RobotDescription& arm) {
-  if (arm.base_known && o.data.size() > 1) throw UsageError(known_base_of_stations);
+CalibrationOptions options_for(CalibrationOptions o, const vn::RobotDescription& arm, std::size_t stations) {
+  if (arm.base_known && stations > 1) throw UsageError(known_base_of_stations);
   const std::string held = hold_known_parts(arm, o.calibrate);
   if (!held.empty()) fmt::print("Held, because passive joints do not move by themselves: {}\n", held);
+  o.calibrate.errors.drives = arm.drives;
+  o.calibrate.errors.down = arm.chain_down();
+  o.calibrate.errors.controller = arm.controller;
   return o;
 }
 
 PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, const CalibrationOptions& options,
                                      const vernier::FitOptions& fit) {
-  const CalibrationOptions o = options_for(options, robot);
+  const CalibrationOptions o = options_for(options, robot, options.data.size());
   return dispatch_dof(robot.dof(), [&](auto n) {
     try {
       return calibrate_measured<n()>(robot, o, fit, [&] {

@@ -4,6 +4,7 @@
 /// @file
 /// `calibrate` from measured poses, whatever the number of joints.
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -58,17 +59,19 @@ struct PoseCalibration {
 PoseCalibration calibrate_from_poses(const vernier::RobotDescription& robot, const CalibrationOptions& options,
                                      const vernier::FitOptions& fit);
 
-/// Does so with other measurements; of an arm of N joints, with the options that it leaves open. Compiled in
-/// pose_calibration.cpp, for all numbers of joints.
+/// Does so with other measurements, for an arm of N joints. Compiled in pose_calibration.cpp, for all numbers of
+/// joints.
+/// @param options see `options_for`
 /// @param measure reads them, after an earlier model was read and fits
 template <int N>
 PoseCalibration calibrate_measured(const vernier::RobotDescription& robot, const CalibrationOptions& options,
                                    const vernier::FitOptions& fit,
                                    const std::function<std::shared_ptr<const MeasuredFiles<N>>()>& measure);
 
-/// Options with those frames unknown that the arm does not state as known, and without what its passive joints hide,
-/// which it prints.
+/// Options for an arm: with its gears, gravity and controller, with those frames unknown that it does not state as
+/// known, and without what its passive joints hide, which it prints.
+/// @param stations number of stations that measure, each with a frame of its own
 /// @throws UsageError for a known base of several stations
-CalibrationOptions options_for(CalibrationOptions options, const vernier::RobotDescription& arm);
+CalibrationOptions options_for(CalibrationOptions options, const vernier::RobotDescription& arm, std::size_t stations);
 
 }  // namespace support

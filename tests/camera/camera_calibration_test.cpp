@@ -208,6 +208,12 @@ TEST(CalibrateByCamera, RefusesWhatImagesDoNotDetermine) {
   EXPECT_NE(complaint_of(shuffled, {.cameras = {setup.camera}}).find("do not agree with the poses of the arm"),
             std::string::npos);
   EXPECT_NE(complaint_of(simulated, {.free = {"k4"}}).find("no intrinsic is called 'k4'"), std::string::npos);
+  EXPECT_NE(complaint_of(simulated, {.choose = false, .held = vn::HeldCameras{}, .left_out = false})
+                .find("0 held cameras for 1 of the corners"),
+            std::string::npos);
+  EXPECT_NE(complaint_of(simulated, {.choose = false, .held = vn::HeldCameras{{setup.camera}}})
+                .find("held cameras beside choose or left_out"),
+            std::string::npos);
 }
 
 }  // namespace

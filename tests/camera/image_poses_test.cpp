@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -20,6 +21,22 @@ using vernier_test::ViewSetup;
 namespace image_poses_test {
 namespace {
 
+/// The state behind simulated views, with intrinsics of which nothing is known beforehand.
+struct TrueArm {
+  TrueArm(const vn::Robot<6>& robot, const ViewSetup& setup, const vernier_test::SimulatedViews& simulated)
+      : rows(simulated.rows) {
+    rows.flanges = vn::ArmGeometry(vn::Framed(robot.chain)).poses(rows.joints);
+    state.bases = simulated.bases;
+    state.tools = {simulated.tool};
+    state.cameras = priors.cameras = {setup.camera};
+    priors.intrinsics = vn::VectorX::Constant(9, 1e6);
+  }
+
+  vn::ImageRows rows;
+  vn::detail::CameraState state;
+  vn::detail::CameraPriors priors;
+};
+
 class ImagePoses : public ::testing::TestWithParam<bool> {};
 
 TEST_P(ImagePoses, HaveTrueCovariances) {
@@ -30,23 +47,16 @@ TEST_P(ImagePoses, HaveTrueCovariances) {
   setup.places = 1;
   const vn::Robot<6> robot = vn::robots::abb_irb120();
   const auto simulated = vernier_test::simulated_views(robot.chain, robot.limits, setup, 12);
-  vn::ImageRows rows = simulated.rows;
-  rows.flanges = vn::ArmGeometry(vn::Framed(robot.chain)).poses(rows.joints);
-  vn::detail::CameraState state;
-  state.bases = simulated.bases;
-  state.tools = {simulated.tool};
-  state.cameras = {setup.camera};
-  vn::detail::CameraPriors priors;
-  priors.cameras = state.cameras;
-  priors.intrinsics = vn::VectorX::Ones(9);
-  const vn::Isometry3 truth = simulated.bases[0] * rows.flanges[2] * simulated.tool;
+  const TrueArm arm(robot, setup, simulated);
+  const vn::Isometry3 truth = simulated.bases[0] * arm.rows.flanges[2] * simulated.tool;
   vn::Rng rng(1);
   constexpr int draws = 12000;
   vn::Matrix6 spread = vn::Matrix6::Zero(), predicted = vn::Matrix6::Zero();
   for (int draw = 0; draw < draws; ++draw) {
     vn::View view =
         vernier_test::view_of(setup.camera, setup.board, setup.on_flange ? truth.inverse() : truth, setup.noise, rng);
-    vn::detail::CameraProblem problem(setup.on_flange, setup.board, {{&view, 2, 0, 0}}, rows, state, priors);
+    vn::detail::CameraProblem problem(setup.on_flange, setup.board, {{&view, 2, 0, 0}}, arm.rows, arm.state,
+                                      arm.priors);
     problem.pixel_sigma = setup.noise;
     const auto seen = problem.seen_pose(0);
     ASSERT_TRUE(seen.has_value());
@@ -98,19 +108,12 @@ TEST(ImagePosesOfOneCamera, ShareTheErrorsOfItsIntrinsics) {
   setup.noise = 1e-3;
   const vn::Robot<6> robot = vn::robots::abb_irb120();
   const auto simulated = vernier_test::simulated_views(robot.chain, robot.limits, setup, 14);
-  vn::ImageRows rows = simulated.rows;
-  rows.flanges = vn::ArmGeometry(vn::Framed(robot.chain)).poses(rows.joints);
-  vn::detail::CameraState state;
-  state.bases = simulated.bases;
-  state.tools = {simulated.tool};
-  state.cameras = {setup.camera};
-  vn::detail::CameraPriors priors;
-  priors.cameras = state.cameras;
-  priors.intrinsics = vn::VectorX::Constant(9, 1e6);
+  const TrueArm actual(robot, setup, simulated);
+  const vn::MatrixX& joints = actual.rows.joints;
   std::vector<vn::detail::PlacedView> placed;
   for (std::size_t v = 0; v < simulated.views.views.size(); ++v)
     placed.push_back({&simulated.views.views[v], static_cast<vn::Index>(v), 0, 0});
-  vn::detail::CameraProblem problem(true, setup.board, placed, rows, state, priors);
+  vn::detail::CameraProblem problem(true, setup.board, placed, actual.rows, actual.state, actual.priors);
   problem.free.intrinsics = {true, true, true, true, true, false, false, false, false};
   const vn::MatrixX joint = problem.covariance();
   const vn::VectorX steps = problem.scales();
@@ -122,9 +125,9 @@ TEST(ImagePosesOfOneCamera, ShareTheErrorsOfItsIntrinsics) {
   for (vn::Index k = 0; k < 6; ++k) frames.push_back({k, -1, 1e-3, 0});
   for (vn::Index k = 0; k < 6; ++k) frames.push_back({vn::ArmParameters::chain_end(6) + k, -1, 1e-3, 0});
   vn::ErrorModelEstimate estimate{.arm = vn::ArmParameterisation({arm}, frames)};
-  vn::SharedErrors shared{.joints = rows.joints};
+  vn::SharedErrors shared{.joints = joints};
   std::vector<vn::RowBlock> linear(placed.size());
-  estimate.arm.linearise(0, rows.joints, vn::MatrixX(), linear.data());
+  estimate.arm.linearise(0, joints, vn::MatrixX(), linear.data());
   vn::MatrixX information = vn::MatrixX::Zero(12, 12);
   for (std::size_t v = 0; v < placed.size(); ++v) {
     const auto seen = problem.seen_pose(v);
@@ -174,6 +177,10 @@ TEST(JointsByCameras, AreFoundWithTheIntrinsics) {
     EXPECT_LT(std::abs(found.camera.cameras[0].parameters()(k) - setup.camera.parameters()(k)),
               4 * found.camera.camera_std[0](k))
         << k;
+  double reach = 0;
+  for (const vn::Isometry3& flange : vn::poses(robot.chain, vn::JointRows<6>(simulated.rows.joints)))
+    reach = (std::max)(reach, flange.translation().norm());
+  EXPECT_NEAR(found.camera.scale_effect, found.camera.board_scale_std * reach, 0.01 * found.camera.scale_effect);
   // from elsewhere the same intrinsics are found
   vn::Camera other = setup.camera;
   other.fx += 20;

@@ -11,6 +11,7 @@
 #include "larger.hpp"
 #include "real_matrix.hpp"
 #include "touched_objects.hpp"
+#include "vernier/error_model/known_geometry.hpp"
 #include "vernier/identification/frames.hpp"
 #include "vernier/identification/identify_by_contacts.hpp"
 #include "vernier/identification/object_errors.hpp"
@@ -333,6 +334,25 @@ TEST(Contacts, RefusesAPlaneTouchedAlongALine) {
   const std::string text = complaint([&] { identify_by_contacts(nominal_arm(), contacts); });
   EXPECT_NE(text.find("contact table: all touches of the plane are along a line ("), std::string::npos) << text;
   EXPECT_NE(text.find("which does not determine its normal"), std::string::npos) << text;
+}
+
+TEST(Contacts, RefuseWhatTheyCannotKeepOfAnEarlierCalibration) {
+  const std::vector<Contact> contacts{touched(vernier_test::front, "front", lengths(8))};
+  const auto complaint_of = [&](const KnownGeometry& known) {
+    return complaint([&] {
+      static_cast<void>(
+          identify_by_contacts(nominal_arm(), contacts, {.frames = Frames::tool}, {.loss = Loss::squared}, &known));
+    });
+  };
+  EXPECT_EQ(complaint_of({.name = "earlier", .values = VectorX::Zero(3)}), "earlier: 3 parameters, the arm has 42");
+  EXPECT_EQ(complaint_of({.name = "earlier", .values = ArmGeometry(nominal_arm()).parameters(), .parameters = {6}}),
+            "earlier: a covariance of 0 parameters, 1 are known");
+  JointTerms terms(6);
+  terms.tilt.emplace(nominal_arm().chain());
+  EXPECT_NE(complaint([&] {
+              static_cast<void>(at_effective_joints(contacts, JointErrors(terms, VectorX::Ones(terms.size()))));
+            }).find("has tilts of joint frames, links that bend, or guides that are not straight"),
+            std::string::npos);
 }
 
 /// Touches of the three kinds of objects with lengths.

@@ -26,7 +26,8 @@ using Actual = Framed<WithJointErrors<DhChain<6>>>;
 
 const FrameParameters probe(Vector6{0.04, -0.02, 0.1, 0, 0, 0});
 
-/// Touches of six bars. A bar has two sockets 50 mm apart, and each socket has an error of its own and 32 touches.
+/// Touches of the two sockets of each of six bars, 32 a socket. The sockets of a bar are 50 mm apart. Each is off its
+/// place by an error of its own, which all its touches share.
 std::vector<Contact> bars(const Actual& arm, double socket_sigma, std::uint64_t seed) {
   const JointLimits<6>& limits = abb_irb120_operating_region().limits;
   std::vector<Contact> out;

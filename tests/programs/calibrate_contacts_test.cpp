@@ -47,8 +47,9 @@ std::string text_of(const std::vector<Contact>& contacts) {
 class CalibrateContacts : public ::testing::Test {
  protected:
   CommandResult calibrate(const std::string& arguments) {
+    const std::string robot = arguments.starts_with("--robot") ? "" : "--robot abb_irb120 ";
     return vernier_test::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR +
-                                         "/calibrate' --robot abb_irb120 --date 2024-05-01 --out figures " + arguments,
+                                         "/calibrate' --date 2024-05-01 --out figures " + robot + arguments,
                                      folder_.path());
   }
   void refused(const std::string& arguments, int code, const std::string& reason) {
@@ -222,19 +223,27 @@ TEST_F(CalibrateContacts, JointErrorsOfAnEarlierCalibrationAreHeld) {
   EXPECT_LT(error(model), 0.05e-3);  // its tool point is that of 24 touches
 }
 
-TEST_F(CalibrateContacts, DistancesAloneCalibrate) {
+/// Distances from two fixed points as files, wire1.csv and wire2.csv.
+/// @param law columns of joints: those of the chain, or others that follow from them
+template <class Arm, class Law>
+void write_wires(const TemporaryFolder& folder, const Arm& arm, const Law& law) {
   const JointRows<6> joints = abb_irb120_operating_region().sample(robots::abb_irb120().chain, 240, 5);
   for (const int wire : {1, 2}) {
     const auto distances =
-        measure_distances(actual_arm(), wire == 1 ? Vector3(0.9, -0.4, 0.1) : Vector3(0.2, 0.9, 0.9),
+        measure_distances(arm, wire == 1 ? Vector3(0.9, -0.4, 0.1) : Vector3(0.2, 0.9, 0.9),
                           joints.middleRows(120 * (wire - 1), 120), 0.03e-3, static_cast<std::uint64_t>(wire));
     std::string text = "q1_rad,q2_rad,q3_rad,q4_rad,q5_rad,q6_rad,distance_mm\n";
     for (Index i = 0; i < distances.size(); ++i) {
-      for (Index j = 0; j < 6; ++j) text += message(distances.joints()(i, j), ',');
+      const JointVector<6> q = law(JointVector<6>(distances.joints(i)));
+      for (const double value : q) text += message(value, ',');
       text += message(distances.length(i) * 1e3, '\n');
     }
-    write_file(folder_ / ("wire" + std::to_string(wire) + ".csv"), text);
+    write_file(folder / ("wire" + std::to_string(wire) + ".csv"), text);
   }
+}
+
+TEST_F(CalibrateContacts, DistancesAloneCalibrate) {
+  write_wires(folder_, actual_arm(), [](const JointVector<6>& q) { return q; });
   const CommandResult result = calibrate(
       "--distances wire1.csv --distances wire2.csv --harmonics 0 --threads 1 --test-every 4 --save model.json --report "
       "report.html --json out.json");
@@ -250,6 +259,34 @@ TEST_F(CalibrateContacts, DistancesAloneCalibrate) {
   EXPECT_LT(robot.provenance().held_out_error, 0.06e-3);
   EXPECT_LT(registered_mean(robot), 0.1e-3);
   EXPECT_NE(read_file(folder_ / "report.html").find("60 held-out distances"), std::string::npos);
+}
+
+// Joint 3 follows motors 2 and 3, as the robot file says, and so do its errors.
+TEST_F(CalibrateContacts, DistancesCalibrateAnArmWhoseMotorsErr) {
+  const DhChain<6> designed = robots::abb_irb120().chain;
+  std::string rows;
+  for (int i = 0; i < 6; ++i) {
+    const DhRow row = designed.row(i);
+    rows += message(i == 0 ? "" : ", ", "{\"a_m\": ", row.a, ", \"alpha_rad\": ", row.alpha, ", \"d_m\": ", row.d,
+                    ", \"theta_rad\": ", row.theta, "}");
+  }
+  write_file(folder_ / "arm.json", R"({"name": "arm", "convention": "standard", "joints": [)" + rows +
+                                       R"(], "controller": {"chain": ["J1", "J2", "J3 - J2", "J4", "J5", "J6"],
+                                          "errors": "motors"}})");
+  const JointErrorSizes sizes{.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0.5e-3, .harmonics = 1};
+  const Framed<WithJointErrors<DhChain<6>>> geared({actual_arm().chain(), draw_joint_errors(designed, sizes, 3)}, {},
+                                                   actual_arm().tool_frame());
+  write_wires(folder_, geared, [](JointVector<6> q) {
+    q(2) += q(1);
+    return q;
+  });
+  const CommandResult result = calibrate(
+      "--robot arm.json --distances wire1.csv --distances wire2.csv --harmonics 1 --no-tilt --no-drift --threads 1 "
+      "--save model.json");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const JointErrors errors = load<6>(folder_ / "model.json").identified().model().joint_errors();
+  ASSERT_FALSE(errors.empty());
+  EXPECT_FALSE(errors.terms().motors.none());
 }
 
 TEST_F(CalibrateContacts, WithoutALengthTheScaleIsNamed) {

@@ -4,7 +4,6 @@
 /// @file
 /// Calibration by cameras and a printed board: intrinsics, base, tool and the arm's geometry from images alone.
 
-#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,7 +23,8 @@ namespace vernier {
 /// Intrinsics and a shape of the board that stay as they are.
 struct HeldCameras {
   std::vector<Camera> cameras{};  ///< one for each camera of the views
-  std::array<double, 4> shape{};  ///< see `CameraReport::held_shape`
+  double board_scale = 1;         ///< as in `CameraReport`
+  Vector3 board_bend{0, 0, 0};    ///< likewise [m]
 };
 
 /// Options of a calibration by cameras.
@@ -38,8 +38,8 @@ struct CameraOptions {
   /// Whether left-out images decide on further unknowns: radial and tangential distortion, focal lengths, principal
   /// point, radial distortion of sixth order, a bent board.
   bool choose = true;
-  /// Values that intrinsics and board keep. What is free is reported all the same: how well it is known, and what its
-  /// errors do to poses.
+  /// Values that intrinsics and board keep, without `choose` and `left_out`. What is free is reported all the same: how
+  /// well it is known, and what its errors do to poses.
   std::optional<HeldCameras> held{};
   bool bend = false;           ///< whether a bend of the board is estimated from the start on
   bool left_out = true;        ///< whether images are left out in turn to report errors at them

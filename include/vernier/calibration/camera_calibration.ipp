@@ -147,6 +147,12 @@ VERNIER_IMPL CameraRun::CameraRun(const std::optional<ArmGeometry>& nominal, con
   board.validate();
   demand(options.cameras.empty() || options.cameras.size() == views.cameras.size(),
          "CameraOptions: ", options.cameras.size(), " cameras for ", views.cameras.size(), " of the corners");
+  if (options.held) {
+    demand(options.held->cameras.size() == views.cameras.size(), "CameraOptions: ", options.held->cameras.size(),
+           " held cameras for ", views.cameras.size(), " of the corners");
+    demand(!options.choose && !options.left_out,
+           "CameraOptions: held cameras beside choose or left_out, which estimate the intrinsics");
+  }
   for (const std::string& name : options.free)
     demand(std::find(Camera::names.begin(), Camera::names.end(), name) != Camera::names.end(),
            "CameraOptions: no intrinsic is called '", name, "'");
@@ -427,8 +433,7 @@ VERNIER_IMPL CameraRun::Fit CameraRun::fit_held(const ViewNumbers& numbers, cons
   CameraState state;
   state.arm = chain_;
   state.cameras = options_.held->cameras;
-  const std::array<double, 4>& shape = options_.held->shape;
-  state.shape = {shape[0], Vector3(shape[1], shape[2], shape[3])};
+  state.shape = {options_.held->board_scale - 1, options_.held->board_bend};
   const Index ambiguous = start_frames(numbers, state);
   CameraProblem problem = problem_of(numbers, std::move(state));
   problem.solve(30);  // frames alone
@@ -496,10 +501,10 @@ VERNIER_IMPL void CameraRun::report_images(const CameraProblem& problem, CameraR
   double sum = 0;
   Index corners = 0;
   const double ratio = out.pixel_sigma / problem.pixel_sigma, by_pixels = ratio > 0 ? ratio * ratio : 1;
-  const auto [precisions, steps] = problem.prior_terms();
-  const Index shared = out.shared_covariance.rows();
-  out.own_information = MatrixX::Zero(shared, shared);
-  out.own_gradient = VectorX::Zero(shared);
+  const Index shared = out.shared.covariance.rows(), first = problem.unknowns() - shared;
+  const VectorX scales = problem.scales();
+  out.shared.information = MatrixX::Zero(shared, shared);
+  out.shared.gradient = VectorX::Zero(shared);
   const std::vector<Isometry3> poses = problem.poses();
   for (std::size_t v = 0; v < placed_.size(); ++v) {
     const View& view = *placed_[v].view;
@@ -521,25 +526,27 @@ VERNIER_IMPL void CameraRun::report_images(const CameraProblem& problem, CameraR
     corners += one.corners;
     for (std::size_t i = 0; i < view.corners.size(); ++i) out.downweighted += problem.weight(v, i) < 0.5 ? 1 : 0;
     out.images.push_back(std::move(one));
-    if (const auto seen = problem.seen_pose(v))
-      if (positive_definite(seen->second, 6))
-        out.poses.push_back({placed_[v].row, placed_[v].base, placed_[v].tool, seen->first, by_pixels * seen->second,
-                             problem.effect_of_shared(v, seen->first)});
-    if (const auto seen = problem.seen_pose(v)) problem.add_own(v, seen->first, out.own_information, out.own_gradient);
+    const auto seen = problem.seen_pose(v);
+    if (!seen) continue;
+    if (shared > 0) problem.add_own(v, seen->first, out.shared.information, out.shared.gradient);
+    if (!positive_definite(seen->second, 6)) continue;
+    MatrixX by_shared(6, 0);
+    if (shared > 0) by_shared = problem.effect_of_shared(v, seen->first);
+    for (Index k = 0; k < shared; ++k)
+      for (Index r = 0; r < 6; ++r) by_shared(r, k) /= scales(first + k);
+    out.poses.push_back({placed_[v].row, placed_[v].base, placed_[v].tool, seen->first, by_pixels * seen->second,
+                         std::move(by_shared)});
   }
   out.mean = sum / static_cast<double>(corners);
-  const VectorX scales = problem.scales();
-  out.own_information /= by_pixels;  // the noise as it is
-  out.own_gradient /= by_pixels;
-  out.shared_steps.resize(shared);
-  for (Index k = 0; k < shared; ++k) {  // priors count as stated
-    const Index at = precisions.size() - shared + k;
-    out.shared_steps(k) = scales(at);
-    out.own_information(k, k) += precisions(at);
-    out.own_gradient(k) += precisions(at) * steps(at);
+  out.shared.information /= by_pixels;  // the noise as it is
+  out.shared.gradient /= by_pixels;
+  const auto [precisions, steps] = problem.prior_terms();
+  for (Index c = 0; c < shared; ++c) {
+    out.shared.information(c, c) += precisions(first + c);  // priors count as stated
+    out.shared.gradient(c) += precisions(first + c) * steps(first + c);
+    out.shared.gradient(c) /= scales(first + c);
+    for (Index r = 0; r < shared; ++r) out.shared.information(r, c) /= scales(first + r) * scales(first + c);
   }
-  const BoardShape& shape = problem.state.shape;
-  out.held_shape = {shape.scale, shape.bend(0), shape.bend(1), shape.bend(2)};
 }
 
 VERNIER_IMPL void CameraRun::report_left_out(const CameraFreedom& chosen, CameraReport& out) const {
@@ -619,8 +626,13 @@ VERNIER_IMPL void CameraRun::report_unknowns(const CameraProblem& problem, Camer
   };
   frames(problem.state.bases, true, out.in_base, out.in_base_std);
   frames(problem.state.tools, false, out.in_flange, out.in_flange_std);
-  if (const Index shared = problem.unknowns() - at; shared > 0 && known)
-    out.shared_covariance = larger(at, shared)->block(at, at, shared, shared);
+  if (const Index shared = problem.unknowns() - at; shared > 0 && known) {
+    const MatrixX& from = *larger(at, shared);
+    out.shared.covariance.resize(shared, shared);
+    for (Index c = 0; c < shared; ++c)
+      for (Index r = 0; r < shared; ++r)
+        out.shared.covariance(r, c) = from(at + r, at + c) * scales(at + r) * scales(at + c);
+  }
   for (std::size_t c = 0; c < problem.state.cameras.size(); ++c) {
     VectorX std = VectorX::Zero(Camera::num_parameters);
     std::vector<Index> estimated;

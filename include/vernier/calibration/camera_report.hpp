@@ -4,7 +4,6 @@
 /// @file
 /// What a calibration by cameras found: intrinsics, frames, errors of images and decisions.
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,7 +47,15 @@ struct ImagePose {
   Index tool = 0;       ///< whose tool
   Isometry3 pose;       ///< P
   Matrix6 covariance;   ///< of shifts and rotations of P, rotations from the left [m, rad], by pixels alone
-  MatrixX by_shared{};  ///< what the errors of `CameraReport::shared_covariance` do to it, 6 x these
+  MatrixX by_shared{};  ///< what unit errors of `SharedUnknowns` do to it, 6 x these [m, rad]
+};
+
+/// What all images share: the intrinsics of each camera that were estimated [px, 1], then the scale of the board [1]
+/// and its bend [m].
+struct SharedUnknowns {
+  MatrixX covariance{};   ///< of their errors, which the poses of all images have in common
+  MatrixX information{};  ///< what images and priors say of them, wherever the arm was: inverse of a covariance
+  VectorX gradient{};     ///< of half the sum of squares behind that, at the present values
 };
 
 /// Unknowns on which left-out images decided.
@@ -67,18 +74,11 @@ struct CameraReport {
   std::vector<Camera> cameras{};            ///< estimated, or as given
   std::vector<VectorX> camera_std{};        ///< standard deviations of the nine intrinsics; 0 for those that were held
   std::vector<MatrixX> camera_covariances{};  ///< of the nine intrinsics of each camera; 0 for those that were held
-  /// Of the intrinsics and the shape of the board that were estimated, in steps of the fit: errors that the poses of
-  /// all images share.
-  MatrixX shared_covariance{};
-  MatrixX own_information{};  ///< what images and priors say of these, wherever the arm was: inverse of a covariance
-  VectorX own_gradient{};     ///< of half the sum of squares behind, at the present values
-  VectorX shared_steps{};     ///< units of these
-  /// Scale less one, and heights of the bent board at half a diagonal from the middle (xx, xy, yy), as poses have it.
-  std::array<double, 4> held_shape{};
-  Board board{};                ///< as stated
-  double board_scale = 1;       ///< lengths of the board in those that were stated
-  double board_scale_std = 0;   ///< its standard deviation
-  Vector3 board_bend{0, 0, 0};  ///< heights at half a diagonal from the middle: xx, xy, yy [m]
+  SharedUnknowns shared{};                    ///< empty where nothing is shared, or its covariance is not known
+  Board board{};                              ///< as stated
+  double board_scale = 1;                     ///< lengths of the board in those that were stated
+  double board_scale_std = 0;                 ///< its standard deviation
+  Vector3 board_bend{0, 0, 0};                ///< heights at half a diagonal from the middle: xx, xy, yy [m]
   /// What stands still, in the arm's base frame: base_T_camera of each camera, or base_T_board of each place.
   std::vector<Isometry3> in_base{};
   std::vector<Vector6> in_base_std{};  ///< standard deviations of shifts [m] and rotations [rad]

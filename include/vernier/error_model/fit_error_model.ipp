@@ -33,146 +33,174 @@ class ErrorModelFit {
                options, spectra_of(options, input.nominal.joints()), input.nominal),
         problem_(model_.problem) {
     problem_.executor = executor;
-    static_cast<void>(options.controller.joints(input.nominal.joints()));
-    JointTerms none(input.nominal.joints());
-    none.motors = MotorAngles(options.controller);
-    problem_.arm.set_terms(std::move(none), VectorX(), VectorX());
+    problem_.arm.set_terms(no_terms(options, input.nominal.joints()), VectorX(), VectorX());
   }
 
   VERNIER_LOCAL ErrorModelOutput run(PriorSearch search) {
-    ErrorModelOutput out{.estimate = {.arm = problem_.arm}};
-    ErrorModelEstimate& estimate = out.estimate;
     model_.solve();
-    out.stages.push_back({Stage::geometry, true, arms()});
-    if (input_.sets.front().locates()) estimate.geometry_left_out_errors = model_.left_out_errors();
-
-    JointTerms elastic = problem_.arm.terms();
-    add_to(elastic, JointTermBlock::Kind::gravity, options_.down);
-    const std::optional<StatedPayloads> payloads = stated_payloads(problem_);
-    if (options_.compliance && payloads && payloads->vary)
-      elastic.payload.emplace(input_.nominal, options_.down, payloads->mean);
-    const bool deflects = elastic.size() > 0 && model_.add(Block::elastic, elastic);
-    if (deflects) model_.solve();
-    if (deflects && options_.estimate_down)
-      estimate.down_std = estimate_down(model_, elastic, input_.nominal, options_.down);
-    const Vector3 down = elastic.gravity ? elastic.gravity->down() : options_.down;
-    if (elastic.payload && problem_.arm.terms().payload) {
-      JointTerms bends = problem_.arm.terms();
-      bends.bend.emplace(input_.nominal, down, payloads->mean);
-      if (model_.add(Block::payload_bend, bends)) model_.solve();
-      elastic.bend = problem_.arm.terms().bend;
-    }
-    out.stages.push_back({Stage::elastic, deflects, arms()});
-
-    JointTerms all = elastic;
-    for (int j = 0; j < all.joints; ++j)
-      if (input_.nominal.revolute(all.motors.row_of(j)))
-        all.transmission[static_cast<std::size_t>(j)] =
-            orders_of_joint(options_, model_.spectra, static_cast<std::size_t>(j), problem_.num_blocks());
-    // linear in the joints, so beyond the measured ranges they stay as at their ends
-    JointTerms linear = elastic;
-    linear.gear_ratio = options_.gear_ratio;
-    linear.coupling = options_.coupling;
-    const MatrixX joints = all.motors.angles(problem_.joints());
-    for (Index j = 0; j < joints.cols(); ++j)
-      linear.linear_ranges.push_back({joints.col(j).minCoeff(), joints.col(j).maxCoeff()});
-    const bool periodic = all.size() > elastic.size(), geared = periodic && (linear.gear_ratio || linear.coupling);
-    const auto add_joint_functions = [&] {
-      const bool harmonics = geared ? add_functions(all, linear) : periodic && model_.add(Block::jointwise, all);
-      if (!harmonics) return false;
-      model_.steps(2);
-      estimate.fallback_error = model_.blocks.back().without;
-      model_.size_by_evidence(link_unknowns(problem_.arm));  // less is left than when their priors were chosen
-      model_.learn_spectrum(6);
-      linear.transmission = all.transmission;
-      if (geared && !problem_.arm.terms().gear_ratio && !problem_.arm.terms().coupling &&
-          model_.add(Block::gears, linear))
-        model_.learn_spectrum(4);
-      return true;
-    };
-    bool harmonics = add_joint_functions();
-    const auto geared_already = [&] { return problem_.arm.terms().gear_ratio || problem_.arm.terms().coupling; };
-    const bool bent = add_straightness();  // beside the functions, which look like a bend where they are missing
-    if (bent && periodic && !harmonics && !geared_already()) {  // and the other way round
-      std::erase_if(model_.blocks,
-                    [](const BlockChoice& one) { return one.block == Block::jointwise || one.block == Block::gears; });
-      all.straightness = linear.straightness = problem_.arm.terms().straightness;
-      harmonics = add_joint_functions();
-    }
-    const bool jointwise = bent || harmonics || geared_already();
-    if (jointwise) {
-      if (elastic.gravity) {  // deflection is clearer once all else is modelled
-        JointTerms deflecting = problem_.arm.terms();
-        deflecting.gravity = elastic.gravity;
-        deflecting.payload = elastic.payload;
-        if (model_.gravity().empty())
-          model_.add(Block::elastic_again, deflecting);
-        else
-          model_.choose_by_evidence(Block::elastic_again, model_.gravity());
-      }
-      model_.size_by_evidence(link_unknowns(problem_.arm));
-      model_.solve();
-      if (search && harmonics) {
-        tune(search);
-        model_.solve();
-      }
-    }
-    out.stages.push_back({Stage::jointwise, jointwise, arms()});
-
-    JointTerms approached = problem_.arm.terms();
-    const bool hysteresis =
-        add_to(approached, JointTermBlock::Kind::hysteresis, down) && model_.add(Block::approach, approached);
-    if (hysteresis) model_.steps(2);
-    std::vector<FittedArm> without_tilt = arms();
-    JointTerms tilted = problem_.arm.terms();
-    const bool tilt = add_to(tilted, JointTermBlock::Kind::tilt, down) && model_.add(Block::tilt, tilted);
-    if (tilt) {
-      if (!harmonics) estimate.fallback_error = model_.blocks.back().without;
-      model_.steps(2);
-      model_.size_by_evidence(model_.gravity());  // the third axis, that of the joint
-      model_.solve();
-    }
-    bool thermal = options_.temperature && add_temperature(model_, options_.thermal_prior_std);
-    if (thermal) {
-      const auto temperatures = problem_.temperatures();
-      out.temperatures = temperatures.range;
-      estimate.mean_temperature = temperatures.mean;
-      estimate.temperature_std = temperatures.std;
-    }
-    const bool inherited = options_.prior != nullptr && inherit(out);
-    if (inherited) thermal = problem_.arm.thermal_rates(0).size() > 0;
+    out_.stages.push_back({Stage::geometry, true, arms()});
+    if (input_.sets.front().locates()) out_.estimate.geometry_left_out_errors = model_.left_out_errors();
+    elastic_step();
+    jointwise_step(search);
+    approach_step();
+    tilt_step();
+    temperature_step();
+    inherited_ = options_.prior != nullptr && inherit();
+    if (inherited_) thermal_ = problem_.arm.thermal_rates(0).size() > 0;
     if (options_.drift) add_drift(model_);
-    if (harmonics && !search && !inherited) {  // with the weights that outliers have by now
+    if (harmonics_ && !search && !inherited_) {  // with the weights that outliers have by now
       model_.learn_spectrum(4);
       model_.steps(1);
     }
-    if (harmonics && options_.find_lines && !inherited) find_lines(model_);
-    if (options_.compliance && payloads && !payloads->vary && !inherited) leave_payload_open(payloads->mean, down);
+    if (harmonics_ && options_.find_lines && !inherited_) find_lines(model_);
+    if (options_.compliance && payloads_ && !payloads_->vary && !inherited_) leave_payload_open(payloads_->mean);
     model_.solve();
-    out.estimate.drift = problem_.drift;
+    add_last_stages();
+    complete_estimate();
+    return std::move(out_);
+  }
+
+ private:
+  /// Compliances to gravity and payload, and bends under a payload.
+  VERNIER_LOCAL void elastic_step() {
+    elastic_ = problem_.arm.terms();
+    add_to(elastic_, JointTermBlock::Kind::gravity, options_.down);
+    payloads_ = stated_payloads(problem_);
+    if (options_.compliance && payloads_ && payloads_->vary)
+      elastic_.payload.emplace(input_.nominal, options_.down, payloads_->mean);
+    const bool deflects = elastic_.size() > 0 && model_.add(Block::elastic, elastic_);
+    if (deflects) model_.solve();
+    if (deflects && options_.estimate_down)
+      out_.estimate.down_std = estimate_down(model_, elastic_, input_.nominal, options_.down);
+    down_ = elastic_.gravity ? elastic_.gravity->down() : options_.down;
+    if (elastic_.payload && problem_.arm.terms().payload) {
+      JointTerms bends = problem_.arm.terms();
+      bends.bend.emplace(input_.nominal, down_, payloads_->mean);
+      if (model_.add(Block::payload_bend, bends)) model_.solve();
+      elastic_.bend = problem_.arm.terms().bend;
+    }
+    out_.stages.push_back({Stage::elastic, deflects, arms()});
+  }
+
+  /// Harmonics, gear ratios and coupling; guides that are not straight.
+  VERNIER_LOCAL void jointwise_step(PriorSearch search) {
+    JointTerms periodic = elastic_;
+    for (int j = 0; j < periodic.joints; ++j)
+      if (input_.nominal.revolute(periodic.motors.row_of(j)))
+        periodic.transmission[static_cast<std::size_t>(j)] =
+            orders_of_joint(options_, model_.spectra, static_cast<std::size_t>(j), problem_.num_blocks());
+    // linear in the joints, so beyond the measured ranges they stay as at their ends
+    JointTerms linear = elastic_;
+    linear.gear_ratio = options_.gear_ratio;
+    linear.coupling = options_.coupling;
+    const MatrixX angles = linear.motors.angles(problem_.joints());
+    for (Index j = 0; j < angles.cols(); ++j)
+      linear.linear_ranges.push_back({angles.col(j).minCoeff(), angles.col(j).maxCoeff()});
+    harmonics_ = add_joint_functions(periodic, linear);
+    const bool bent = add_straightness();       // beside the functions, which look like a bend where they are missing
+    if (bent && !harmonics_ && !has_gears()) {  // and the other way round
+      std::erase_if(model_.blocks,
+                    [](const BlockChoice& one) { return one.block == Block::jointwise || one.block == Block::gears; });
+      periodic.straightness = linear.straightness = problem_.arm.terms().straightness;
+      harmonics_ = add_joint_functions(periodic, linear);
+    }
+    jointwise_ = bent || harmonics_ || has_gears();
+    if (jointwise_) size_again(search);
+    out_.stages.push_back({Stage::jointwise, jointwise_, arms()});
+  }
+
+  /// Harmonics, and gear ratios and coupling beside them or in their place.
+  /// @return whether there are harmonics
+  VERNIER_LOCAL bool add_joint_functions(const JointTerms& periodic, JointTerms linear) {
+    if (periodic.size() == periodic.num_dense_terms()) return false;
+    const bool may_gear = linear.gear_ratio || linear.coupling;
+    if (!(may_gear ? add_harmonics_or_gears(periodic, linear) : model_.add(Block::jointwise, periodic))) return false;
+    model_.steps(2);
+    out_.estimate.fallback_error = model_.blocks.back().without;
+    model_.size_by_evidence(link_unknowns(problem_.arm));  // less is left than when their priors were chosen
+    model_.learn_spectrum(6);
+    linear.transmission = periodic.transmission;
+    if (may_gear && !has_gears() && model_.add(Block::gears, linear)) model_.learn_spectrum(4);
+    return true;
+  }
+
+  /// Sizes deflection and geometry again, which is clearer once functions of joints are modelled; then their priors.
+  VERNIER_LOCAL void size_again(PriorSearch search) {
+    if (elastic_.gravity) {
+      JointTerms deflecting = problem_.arm.terms();
+      deflecting.gravity = elastic_.gravity;
+      deflecting.payload = elastic_.payload;
+      if (model_.gravity().empty())
+        model_.add(Block::elastic_again, deflecting);
+      else
+        model_.choose_by_evidence(Block::elastic_again, model_.gravity());
+    }
+    model_.size_by_evidence(link_unknowns(problem_.arm));
+    model_.solve();
+    if (!search || !harmonics_) return;
+    tune(search);
+    model_.solve();
+  }
+
+  /// Hysteresis.
+  VERNIER_LOCAL void approach_step() {
+    JointTerms approached = problem_.arm.terms();
+    hysteresis_ =
+        add_to(approached, JointTermBlock::Kind::hysteresis, down_) && model_.add(Block::approach, approached);
+    if (hysteresis_) model_.steps(2);
+    without_tilt_ = arms();
+  }
+
+  /// Tilts of the joints' frames under gravity.
+  VERNIER_LOCAL void tilt_step() {
+    JointTerms tilted = problem_.arm.terms();
+    tilt_ = add_to(tilted, JointTermBlock::Kind::tilt, down_) && model_.add(Block::tilt, tilted);
+    if (!tilt_) return;
+    if (!harmonics_) out_.estimate.fallback_error = model_.blocks.back().without;
+    model_.steps(2);
+    model_.size_by_evidence(model_.gravity());  // the third axis, that of the joint
+    model_.solve();
+  }
+
+  /// Change of the geometry with temperature.
+  VERNIER_LOCAL void temperature_step() {
+    thermal_ = options_.temperature && add_temperature(model_, options_.thermal_prior_std);
+    if (!thermal_) return;
+    const auto temperatures = problem_.temperatures();
+    out_.temperatures = temperatures.range;
+    out_.estimate.mean_temperature = temperatures.mean;
+    out_.estimate.temperature_std = temperatures.std;
+  }
+
+  /// The stages after those of the functions of joints; one has the arms with everything.
+  VERNIER_LOCAL void add_last_stages() {
     const std::vector<FittedArm> fitted = arms();
     const auto add = [&](Stage stage, bool included, const std::vector<FittedArm>& with, bool last = true) {
-      out.stages.push_back({stage, included, with, last});
+      out_.stages.push_back({stage, included, with, last});
     };
-    const bool later = hysteresis || tilt || thermal || inherited;
-    const bool geometry_alone = !later && !jointwise && problem_.arm.terms().size() == 0;
-    if (inherited) {
+    if (inherited_) {
       add(Stage::prior, true, fitted);
-    } else if (later) {
-      if (hysteresis || !tilt) add(Stage::approach, hysteresis, tilt ? without_tilt : fitted, !tilt);
-      if (tilt) add(Stage::tilt, true, fitted);
-      if (thermal) add(Stage::temperature, true, fitted);
+    } else if (hysteresis_ || tilt_ || thermal_) {
+      if (hysteresis_ || !tilt_) add(Stage::approach, hysteresis_, tilt_ ? without_tilt_ : fitted, !tilt_);
+      if (tilt_) add(Stage::tilt, true, fitted);
+      if (thermal_) add(Stage::temperature, true, fitted);
     } else {  // what is deployed is a stage of before: drift and lines are taken off it, too
-      for (StagedArms& staged : out.stages) {
-        const Stage replaced = jointwise ? Stage::jointwise : geometry_alone ? Stage::geometry : Stage::elastic;
+      for (StagedArms& staged : out_.stages) {
+        const Stage replaced = jointwise_ ? Stage::jointwise : geometry_alone() ? Stage::geometry : Stage::elastic;
         if (staged.stage == replaced || staged.stage == Stage::jointwise) staged.arms = fitted;
       }
-      out.stages.back().last = true;
+      out_.stages.back().last = true;
     }
     if (!problem_.drift.empty()) add(Stage::session, true, fitted);
-    out.joints = problem_.joints();
-    for (int s = 0; thermal && s < problem_.arm.stations(); ++s)
-      out.thermal_rates.push_back(problem_.arm.thermal_rates(s));
+  }
+
+  /// What the fit says of itself, once it is solved.
+  VERNIER_LOCAL void complete_estimate() {
+    ErrorModelEstimate& estimate = out_.estimate;
+    out_.joints = problem_.joints();
+    for (int s = 0; thermal_ && s < problem_.arm.stations(); ++s)
+      out_.thermal_rates.push_back(problem_.arm.thermal_rates(s));
+    estimate.drift = problem_.drift;
     estimate.drives = options_.drives;
     estimate.arm = problem_.arm;
     estimate.blocks = model_.blocks;
@@ -184,17 +212,22 @@ class ErrorModelFit {
         of_station.step_variance = problem_.drift_step_variance(estimate.residual_variance);
         to_chain(of_station);
       }
-    if (geometry_alone) estimate.geometry_left_out_errors = estimate.left_out_errors;
-    if (inherited) {  // for the next to start from
+    if (geometry_alone()) estimate.geometry_left_out_errors = estimate.left_out_errors;
+    if (inherited_) {  // for the next to start from
       VectorX precisions = problem_.arm.precisions();
       for (Index k = 0, first = precisions.size() - expected_.size(); k < expected_.size(); ++k)
         precisions(first + k) = expected_(k);
       estimate.arm.set_precisions(precisions);
     }
-    return out;
   }
 
- private:
+  /// Whether nothing but geometry and frames is in the model.
+  VERNIER_LOCAL bool geometry_alone() const {
+    return !hysteresis_ && !tilt_ && !thermal_ && !inherited_ && !jointwise_ && problem_.arm.terms().size() == 0;
+  }
+  /// Whether gear ratios or coupling are in the model.
+  VERNIER_LOCAL bool has_gears() const { return problem_.arm.terms().gear_ratio || problem_.arm.terms().coupling; }
+
   /// A drift of the motors' zeros as one of the zeros of the chain's joints.
   VERNIER_LOCAL void to_chain(SessionDrift& drift) const {
     const MotorAngles& motors = problem_.arm.terms().motors;
@@ -241,9 +274,9 @@ class ErrorModelFit {
 
   /// Adds compliances to payload of which one payload says nothing: they stay at their priors, and so does what they
   /// add to the covariance under other payloads. Products of compliance and weight tell how compliant a joint may be.
-  VERNIER_LOCAL void leave_payload_open(const Payload& reference, const Vector3& down) {
+  VERNIER_LOCAL void leave_payload_open(const Payload& reference) {
     JointTerms terms = problem_.arm.terms();
-    terms.payload.emplace(input_.nominal, down, reference);
+    terms.payload.emplace(input_.nominal, down_, reference);
     model_.extend_terms(terms);
     constexpr double light = 100;  // weight of the links of a light arm [N]
     const VectorX& coefficients = problem_.arm.joint_errors().coefficients();
@@ -273,7 +306,7 @@ class ErrorModelFit {
   /// @param periodic terms with harmonics
   /// @param linear   terms with gear ratios and coupling
   /// @return         whether there are harmonics
-  VERNIER_LOCAL bool add_functions(const JointTerms& periodic, JointTerms linear) {
+  VERNIER_LOCAL bool add_harmonics_or_gears(const JointTerms& periodic, JointTerms linear) {
     const CalibrationProblem before = problem_;
     const bool harmonics = model_.add(Block::jointwise, periodic);
     const CalibrationProblem with_harmonics = problem_;
@@ -296,12 +329,12 @@ class ErrorModelFit {
 
   /// Fits again with what an earlier calibration knows as the prior, and keeps that where left-out poses are predicted
   /// better.
-  VERNIER_LOCAL bool inherit(ErrorModelOutput& out) {
+  VERNIER_LOCAL bool inherit() {
     const ArmPrior& prior = *options_.prior;
     demand(prior.nominal.joints() == input_.nominal.joints() && prior.nominal.modified() == input_.nominal.modified(),
            "fit_error_model: the earlier calibration is of an arm of ", prior.nominal.joints(), " joints in the ",
            prior.nominal.modified() ? "modified" : "standard", " convention");
-    ErrorModelEstimate& estimate = out.estimate;
+    ErrorModelEstimate& estimate = out_.estimate;
     const CalibrationProblem without = problem_;
     const double error_without = model_.left_out_errors().mean();
 
@@ -345,10 +378,10 @@ class ErrorModelFit {
     if (same_value(estimate.fallback_error, 0)) estimate.fallback_error = error_without;
     expected_ = VERNIER_LATER(before.arm.precisions()).tail(terms.size());
     if (before.temperature_std > 0) {
-      out.temperatures = problem_.temperatures().std > 0
-                             ? std::array{(std::min)(problem_.temperatures().range[0], prior.temperatures[0]),
-                                          (std::max)(problem_.temperatures().range[1], prior.temperatures[1])}
-                             : prior.temperatures;
+      out_.temperatures = problem_.temperatures().std > 0
+                              ? std::array{(std::min)(problem_.temperatures().range[0], prior.temperatures[0]),
+                                           (std::max)(problem_.temperatures().range[1], prior.temperatures[1])}
+                              : prior.temperatures;
       estimate.mean_temperature = before.mean_temperature;
       estimate.temperature_std = before.temperature_std;
     } else {
@@ -379,7 +412,14 @@ class ErrorModelFit {
   const ErrorModelOptions& options_;
   ModelSelection model_;
   CalibrationProblem& problem_;  // that of `model_`
-  VectorX expected_{};           // precisions of the joint errors by an earlier calibration that is used
+  ErrorModelOutput out_{.estimate = {.arm = problem_.arm}};
+  std::optional<StatedPayloads> payloads_{};
+  JointTerms elastic_{};          // what may deflect: with compliances, also those that were not supported
+  Vector3 down_ = options_.down;  // as it was estimated, where it was
+  std::vector<FittedArm> without_tilt_{};
+  VectorX expected_{};  // precisions of the joint errors by an earlier calibration that is used
+  // what is in the model
+  bool harmonics_ = false, jointwise_ = false, hysteresis_ = false, tilt_ = false, thermal_ = false, inherited_ = false;
 };
 
 VERNIER_IMPL ErrorModelOutput fit_error_model(ErrorModelInput input, const ErrorModelOptions& options,

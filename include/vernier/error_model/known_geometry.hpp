@@ -22,7 +22,7 @@ VERNIER_API KnownGeometry known_geometry(const ArmPrior& prior, const ArmGeometr
 
 /// Touches at the joint values that joint errors make of those that were commanded: an identification from them holds
 /// these errors. How each touch was approached is not known, so hysteresis is in its middle.
-/// @throws std::invalid_argument for errors that are not of joint values: tilts, straightness
+/// @throws std::invalid_argument for errors that are not of joint values: tilts, bending links, straightness
 VERNIER_API std::vector<Contact> at_effective_joints(std::span<const Contact> contacts, const JointErrors& errors);
 
 /// What was identified from contacts beside joint errors that were held: unknowns of both with their covariance. That

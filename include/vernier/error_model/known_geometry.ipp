@@ -37,8 +37,8 @@ VERNIER_IMPL KnownGeometry known_geometry(const ArmPrior& prior, const ArmGeomet
 
 VERNIER_IMPL std::vector<Contact> at_effective_joints(std::span<const Contact> contacts, const JointErrors& errors) {
   demand(errors.empty() || !errors.tilts(),
-         "the earlier calibration has tilts of joint frames, or guides that are not straight, which contacts cannot "
-         "hold: use it beside measured poses");
+         "the earlier calibration has tilts of joint frames, links that bend, or guides that are not straight, which "
+         "contacts cannot hold: use it beside measured poses");
   std::vector<Contact> out;
   for (const Contact& contact : contacts)
     out.push_back(errors.empty() ? contact

@@ -27,6 +27,8 @@ VERNIER_IMPL JointErrors draw_joint_errors(const ChainTable& chain, const JointE
   demand(same_value(sizes.ripple, 0) || (sizes.ripple_harmonic > sizes.harmonics && sizes.ripple_harmonic <= 500),
          "JointErrorSizes: ripple_harmonic is ", sizes.ripple_harmonic, ", must lie above harmonics (", sizes.harmonics,
          ") and in 1..500");
+  demand(sizes.controller.same() || sizes.controller.chain_joints() == n, "JointErrorSizes: a controller of ",
+         sizes.controller.chain_joints(), " joints of the chain for a chain of ", n);
 
   JointTerms terms(n);
   terms.motors = MotorAngles(sizes.controller);

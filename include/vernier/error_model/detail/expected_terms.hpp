@@ -19,6 +19,10 @@ VERNIER_API std::vector<HarmonicSpectrum> spectra_of(const ErrorModelOptions& op
 VERNIER_API Fourier orders_of_joint(const ErrorModelOptions& options, const std::vector<HarmonicSpectrum>& spectra,
                                     std::size_t joint, Index measurements);
 
+/// No terms yet, of an arm whose gears err where the controller of the options says so.
+/// @throws std::invalid_argument where that is the controller of a chain of another number of joints
+VERNIER_API JointTerms no_terms(const ErrorModelOptions& options, int joints);
+
 /// All terms that the options allow a number of measurements.
 VERNIER_API JointTerms allowed_terms(const ChainTable& nominal, const ErrorModelOptions& options, Index measurements);
 

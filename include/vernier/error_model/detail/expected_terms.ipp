@@ -33,11 +33,19 @@ VERNIER_IMPL Fourier orders_of_joint(const ErrorModelOptions& options, const std
   return {all};
 }
 
+VERNIER_IMPL JointTerms no_terms(const ErrorModelOptions& options, int joints) {
+  const ControllerMap& controller = options.controller;
+  demand(controller.same() || controller.chain_joints() == joints, "fit_error_model: a controller of ",
+         controller.chain_joints(), " joints of the chain for an arm of ", joints);
+  JointTerms out(joints);
+  out.motors = MotorAngles(controller);
+  return out;
+}
+
 VERNIER_IMPL JointTerms allowed_terms(const ChainTable& nominal, const ErrorModelOptions& options, Index measurements) {
   const int joints = nominal.joints();
   const std::vector<HarmonicSpectrum> spectra = spectra_of(options, joints);
-  JointTerms out(joints);
-  out.motors = MotorAngles(options.controller);
+  JointTerms out = no_terms(options, joints);
   for (int j = 0; j < joints; ++j)
     if (nominal.revolute(out.motors.row_of(j)))
       out.transmission[static_cast<std::size_t>(j)] =

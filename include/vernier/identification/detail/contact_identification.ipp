@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vernier/core/check.hpp"
+#include "vernier/core/detail/dense.hpp"
 #include "vernier/identification/detail/contact_assessment.hpp"
 #include "vernier/identification/detail/contact_frames.hpp"
 #include "vernier/identification/detail/contact_identification.hpp"
@@ -114,9 +115,10 @@ VERNIER_IMPL GeometryByContacts identify_geometry_by_contacts(const ArmGeometry&
            " joints, the arm has ", designed.joints());
   ArmGeometry nominal = designed;
   if (known != nullptr) {
-    demand(known->values.size() == designed.num_parameters() &&
-               known->covariance.rows() == static_cast<Index>(known->parameters.size()),
-           known->name, ": ", known->values.size(), " parameters, the arm has ", designed.num_parameters());
+    demand(known->values.size() == designed.num_parameters(), known->name, ": ", known->values.size(),
+           " parameters, the arm has ", designed.num_parameters());
+    demand(known->covariance.rows() == static_cast<Index>(known->parameters.size()), known->name, ": a covariance of ",
+           known->covariance.rows(), " parameters, ", known->parameters.size(), " are known");
     VectorX values = designed.parameters();
     for (Index k = ArmParameters::chain_begin; k < ArmParameters::chain_end(designed.joints()); ++k)
       values(k) = known->values(k);

@@ -220,6 +220,43 @@ static inline void arm_add_harmonics_(const arm_arm_ *arm, const double *q, doub
   }
 }
 #endif
+#if HAS_MOTION
+
+/* Adds the motion of the arm's end by a small turn about a point. */
+static inline void arm_add_turn_(const double *point, const double *by, double *shift, double *turn) {
+  double moved[3];
+  int j;
+  arm_cross_(point, by, moved);
+  for (j = 0; j < 3; ++j) {
+    shift[j] += moved[j];
+    turn[j] += by[j];
+  }
+}
+
+/* Adds how the motion by a turn of joint i's frame changes where joint k moves this frame.
+ * change: of the turn within the frame, overwritten */
+static inline void arm_add_moved_turn_(const arm_links_ *links, int k, int i, const double *turn, double *change,
+                                     double *rates) {
+  const double *axis = links->axis + 3 * k, *origin = links->origin + 3 * i;
+  double lever[3], v[3];
+  int j;
+  arm_cross_(axis, turn, v);
+#if HAS_PRISMATIC
+  if (arm_prismatic_[k]) {
+    for (j = 0; j < 3; ++j) rates[6 * k + j] += v[j];
+    return;
+  }
+#endif
+  for (j = 0; j < 3; ++j) {
+    change[j] += v[j];
+    lever[j] = origin[j] - links->point[3 * k + j];
+  }
+  arm_cross_(axis, lever, v);
+  arm_cross_(v, turn, v);
+  for (j = 0; j < 3; ++j) rates[6 * k + j] += v[j];
+  arm_add_turn_(origin, change, rates + 6 * k, rates + 6 * k + 3);
+}
+#endif
 #if HAS_STRAIGHTNESS
 
 /* Adds how prismatic joints depart from a straight motion: of each, cosines of x, y, z and of the rotations about them.
@@ -233,7 +270,7 @@ static inline void arm_add_guides_(const arm_arm_ *arm, const arm_links_ *links,
   for (i = 0; i < ARM_CHAIN_; ++i) {
     const double *axes[3], *origin = links->origin + 3 * i;
     double z[3], value[6], slope[6], moved[3] = {0, 0, 0}, turned[3] = {0, 0, 0}, moving[3] = {0, 0, 0};
-    double turning[3] = {0, 0, 0}, swung[3], v[3], w[3], rate, angle;
+    double turning[3] = {0, 0, 0}, rate, angle;
     if (!arm_prismatic_[i]) continue;
     arm_cross_(links->x + 3 * i, links->y + 3 * i, z);
     axes[0] = links->x + 3 * i;
@@ -261,35 +298,17 @@ static inline void arm_add_guides_(const arm_arm_ *arm, const arm_links_ *links,
         moving[j] += slope[m] * axes[m][j];
         turning[j] += slope[3 + m] * axes[m][j];
       }
-    arm_cross_(origin, turned, v);
-    for (j = 0; j < 3; ++j) {
-      shift[j] += moved[j] + v[j];
-      turn[j] += turned[j];
-    }
+    for (j = 0; j < 3; ++j) shift[j] += moved[j];
+    arm_add_turn_(origin, turned, shift, turn);
     if (!rates) continue;
-    arm_cross_(links->axis + 3 * i, turned, v);
-    arm_cross_(origin, turning, w);
-    for (j = 0; j < 3; ++j) {
-      rates[6 * i + j] += v[j] + moving[j] + w[j];
-      rates[6 * i + 3 + j] += turning[j];
-    }
-    for (k = 0; k < i; ++k) {
-      const double *axis = links->axis + 3 * k;
-      double lever[3];
-      arm_cross_(axis, turned, v);
-      if (arm_prismatic_[k]) {
-        for (j = 0; j < 3; ++j) rates[6 * k + j] += v[j];
-        continue;
-      }
-      for (j = 0; j < 3; ++j) {
-        lever[j] = origin[j] - links->point[3 * k + j];
-        rates[6 * k + 3 + j] += v[j];
-      }
-      arm_cross_(origin, v, w);
-      arm_cross_(axis, moved, swung);
-      arm_cross_(axis, lever, v);
-      arm_cross_(v, turned, v);
-      for (j = 0; j < 3; ++j) rates[6 * k + j] += swung[j] + v[j] + w[j];
+    for (j = 0; j < 3; ++j) rates[6 * i + j] += moving[j];
+    arm_add_turn_(origin, turning, rates + 6 * i, rates + 6 * i + 3);
+    for (k = 0; k <= i; ++k) {
+      double change[3] = {0, 0, 0}, swung[3];
+      arm_add_moved_turn_(links, k, i, turned, change, rates);
+      if (arm_prismatic_[k]) continue;
+      arm_cross_(links->axis + 3 * k, moved, swung);
+      for (j = 0; j < 3; ++j) rates[6 * k + j] += swung[j];
     }
   }
 }
@@ -311,16 +330,11 @@ static inline void arm_add_bends_(const arm_arm_ *arm, const arm_links_ *links, 
     double bent[3] = {0, 0, 0};
     for (k = -1; k < (rates ? ARM_CHAIN_ : 0); ++k) { /* -1: the motion itself, else its change by joint k */
       const double *axis = links->axis + 3 * (k < 0 ? 0 : k);
-      double lever[3], torque[3], pull[3], arm_of[3], v[3], w[3], about_x, about_y;
+      double lever[3], torque[3], pull[3], v[3], about_x, about_y;
       int slides = 0;
 #if HAS_PRISMATIC
       slides = k >= 0 && arm_prismatic_[k];
 #endif
-      if (k >= 0 && k <= i && slides) { /* moves frame and load alike */
-        arm_cross_(axis, bent, w);
-        for (j = 0; j < 3; ++j) rates[6 * k + j] += w[j];
-        continue;
-      }
       for (j = 0; j < 3; ++j) {
         lever[j] = moment[j] - weight * (k > i ? links->point[3 * k + j] : origin[j]);
         pull[j] = down[j];
@@ -329,35 +343,19 @@ static inline void arm_add_bends_(const arm_arm_ *arm, const arm_links_ *links, 
         for (j = 0; j < 3; ++j) lever[j] = weight * axis[j];
       else if (k > i)
         arm_cross_(axis, lever, lever);
-      else if (k >= 0)
+      else if (k >= 0) /* frame and load turn alike, against gravity */
         arm_cross_(down, axis, pull);
       arm_cross_(lever, pull, torque);
       about_x = c[0] * arm_dot_(x, torque);
       about_y = c[1] * arm_dot_(y, torque);
       for (j = 0; j < 3; ++j) v[j] = about_x * x[j] + about_y * y[j];
-      if (k < 0) {
-        arm_cross_(origin, v, w);
-        for (j = 0; j < 3; ++j) {
-          bent[j] = v[j];
-          turn[j] += v[j];
-          shift[j] += w[j];
-        }
-        continue;
-      }
-      if (k <= i) { /* the frame turns as well */
-        arm_cross_(axis, bent, w);
-        for (j = 0; j < 3; ++j) {
-          v[j] += w[j];
-          arm_of[j] = origin[j] - links->point[3 * k + j];
-        }
-        arm_cross_(axis, arm_of, w);
-        arm_cross_(w, bent, w);
-        for (j = 0; j < 3; ++j) rates[6 * k + j] += w[j];
-      }
-      arm_cross_(origin, v, w);
-      for (j = 0; j < 3; ++j) {
-        rates[6 * k + j] += w[j];
-        rates[6 * k + 3 + j] += v[j];
+      if (k > i) {
+        arm_add_turn_(origin, v, rates + 6 * k, rates + 6 * k + 3);
+      } else if (k >= 0) {
+        arm_add_moved_turn_(links, k, i, bent, v, rates);
+      } else {
+        for (j = 0; j < 3; ++j) bent[j] = v[j];
+        arm_add_turn_(origin, bent, shift, turn);
       }
     }
   }
@@ -385,7 +383,7 @@ static inline void arm_add_motion_(const arm_arm_ *arm, const arm_links_ *links,
     double z[3], tilted[3];
     arm_cross_(x, y, z);
     for (k = -1; k <= (J ? i : -1); ++k) { /* -1: the motion itself, else its change by joint k */
-      double gravity[3], g[3], lever[3], about_x, about_y;
+      double gravity[3], g[3], about_x, about_y;
       if (k < 0) {
         for (j = 0; j < 3; ++j) gravity[j] = down[j];
       } else {
@@ -397,31 +395,12 @@ static inline void arm_add_motion_(const arm_arm_ *arm, const arm_links_ *links,
       about_x = arm_dot_(c, g);
       about_y = arm_dot_(c + 3, g);
       for (j = 0; j < 3; ++j) v[j] = about_x * x[j] + about_y * y[j];
-      if (k < 0) {
-        arm_cross_(origin, v, w);
-        for (j = 0; j < 3; ++j) {
-          tilted[j] = v[j];
-          turn[j] += v[j];
-          shift[j] += w[j];
-        }
-        continue;
+      if (k >= 0) {
+        arm_add_moved_turn_(links, k, i, tilted, v, rates);
+      } else {
+        for (j = 0; j < 3; ++j) tilted[j] = v[j];
+        arm_add_turn_(origin, tilted, shift, turn);
       }
-      arm_cross_(links->axis + 3 * k, tilted, w);
-#if HAS_PRISMATIC
-      if (arm_prismatic_[k]) {
-        for (j = 0; j < 3; ++j) rates[6 * k + j] += w[j];
-        continue;
-      }
-#endif
-      for (j = 0; j < 3; ++j) {
-        v[j] += w[j];
-        rates[6 * k + 3 + j] += v[j];
-        lever[j] = origin[j] - links->point[3 * k + j];
-      }
-      arm_cross_(origin, v, w);
-      arm_cross_(links->axis + 3 * k, lever, v);
-      arm_cross_(v, tilted, v);
-      for (j = 0; j < 3; ++j) rates[6 * k + j] += w[j] + v[j];
     }
   }
 #endif

@@ -59,23 +59,26 @@ int verify_arm(const support::Program& program, Options& o, const vn::SavedModel
   o.sensor.apply(options.sensors);
   options.sensors.use_orientations = !o.positions_only;
   options.expected_error = robot.provenance().expected_error();
-  options.fitted_poses = robot.provenance().fitted_to(data.origin().hashes.front());
+  options.fitted_rows = robot.provenance().fitted_rows;
+  options.fitted_poses = options.fitted_rows.empty() && robot.provenance().fitted_to(data.origin().hashes.front());
   support::Working working("verifying");
   const vn::VerificationReport report =
       vn::verify_calibration(robot.model(), *robot.estimate(), data, options, learned);
   working.finish();
 
+  const auto fresh = options.fitted_rows.others(data.joints(), data.positions());
+  const vn::Dataset<N> checked = report.known > 0 ? data.rows(fresh) : data;
   const std::string summary = report.summary(), verdict = summary.substr(0, summary.find('\n'));
   fmt::print("{}{}\n", support::styled(verdict, report.valid ? support::Look::good : support::Look::bad),
              summary.substr(verdict.size()));
   fmt::print("Errors [mm]\n\n{}\n", vn::stage_table(vn::stages_of(report)));
   if (report.registration) fmt::print("{}\n", report.registration->summary());
-  fmt::print("{}; {} poses of {}\n", calibrated(robot.name(), robot.provenance()), data.size(), o.data);
+  fmt::print("{}; {} poses of {}\n", calibrated(robot.name(), robot.provenance()), checked.size(), o.data);
   const support::Json json = vn::to_json(report, robot.name());
   if (!program.common().json.empty()) support::write_json(program.common().json, json);
   if (!o.report.empty()) {
     vn::ReportInput page = vn::report_input(report, robot.name());
-    support::add_poses(page, robot.nominal().chain(), data);
+    support::add_poses(page, robot.nominal().chain(), checked);
     page.provenance.inputs = {support::file_of(data.origin())};
     support::write_report(program, o.report, page, o.date, {model.file(), model.hash()});
     fmt::print("Report: {}\n", support::shown(o.report));

@@ -135,7 +135,9 @@ class CalibratedArmOf final : public CalibratedArm {
     for (vn::Index i = 0; i < learned.rows(); ++i) learned.row(i) = robot_.learned()->error(data.joints(i)).transpose();
     vn::VerifyOptions options = given;
     options.expected_error = provenance().expected_error();
-    options.fitted_poses = !data.origin().empty() && provenance().fitted_to(data.origin().hashes.front());
+    options.fitted_rows = provenance().fitted_rows;
+    options.fitted_poses =
+        options.fitted_rows.empty() && !data.origin().empty() && provenance().fitted_to(data.origin().hashes.front());
     return vn::verify_calibration(robot_.model(), *robot_.estimate(), vn::Measurements<N>(data), options, learned);
   }
 

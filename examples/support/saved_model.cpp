@@ -113,6 +113,7 @@ void reregister_arm(Program& program, CalibrationOptions o, const vn::Reregister
   vn::Provenance from = robot.provenance();
   from.data_file += "," + file_name(file);
   if (!from.data_sha256.empty()) from.data_sha256 += "," + data.origin().hashes.front();
+  if (!from.fitted_rows.empty()) from.fitted_rows.add({data.joints(), data.positions()});
   from.date = o.date;
   const vn::CalibratedRobot<N> moved = robot.with_model(found.model, from);
   const bool oriented = test.has_orientations() && o.calibrate.sensors.use_orientations;

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "complaint.hpp"
 #include "vernier/calibration/calibrate.hpp"
@@ -81,7 +82,7 @@ TEST(VerifyCalibration, AnUnchangedArmIsValid) {
 // Rows that a camera measured: far worse along one direction, in which shift and rotation go together.
 TEST(VerifyCalibration, RowsWithCovariancesOfTheirOwnCountAsTheyAre) {
   int valid = 0, as_equal_rows = 0, positions_valid = 0;
-  double share = 0;
+  double share = 0, of_plain = 0;
   constexpr int checks = 60;
   for (std::uint64_t seed = 0; seed < checks; ++seed) {
     const auto exact = measure(actual(), poses_of(15, 3000 + seed), noise, 4000 + seed);
@@ -109,15 +110,20 @@ TEST(VerifyCalibration, RowsWithCovariancesOfTheirOwnCountAsTheyAre) {
     const VerificationReport own = verified(rows.with_covariances(covariances));
     valid += own.valid;
     share += own.chi_square / static_cast<double>(own.dof) / checks;
+    const VerificationReport without = verified(exact);
+    ASSERT_EQ(own.dof, 84);  // less the base
+    of_plain += without.chi_square / static_cast<double>(without.dof) / checks;
     as_equal_rows += verified(rows).valid;
-    std::vector<Matrix6> of_positions = covariances;
     positions_valid +=
-        verified(Dataset<6>(exact.joints(), positions).approached_from(exact.previous()).with_covariances(of_positions))
+        verified(Dataset<6>(exact.joints(), positions).approached_from(exact.previous()).with_covariances(covariances))
             .valid;
   }
   EXPECT_GE(valid, 54);
   EXPECT_GE(positions_valid, 54);
-  EXPECT_NEAR(share, 1, 0.15);  // a little below: a visit of the calibration has what its model lacks
+  // One direction of each of the 15 rows scatters as stated: its part of the chi-square is one a degree of freedom. The
+  // others have the part that they have without that noise. The difference has a standard deviation of
+  // sqrt(2 x 15 / 60) / 84 of either, 0.012 of both.
+  EXPECT_NEAR(share, (15 + 69 * of_plain) / 84, 0.036);
   EXPECT_LE(as_equal_rows, 6);  // a third of a millimetre that no joint explains
 }
 
@@ -329,6 +335,51 @@ TEST(VerifyCalibration, RemarksOnAResidualTenTimesTheHeldOutError) {
   };
   EXPECT_EQ(advice_of(10.1), 1);
   EXPECT_EQ(advice_of(9.9), 0);
+}
+
+/// Rows of two data sets, one behind the other.
+Dataset<6> joined(const Dataset<6>& first, const Dataset<6>& second) {
+  const auto stacked = [](const auto& above, const auto& below) {
+    auto out = above;
+    out.conservativeResize(above.rows() + below.rows(), above.cols());
+    out.bottomRows(below.rows()) = below;
+    return out;
+  };
+  return Dataset<6>(stacked(first.joints(), second.joints()), stacked(first.positions(), second.positions()),
+                    stacked(first.orientations(), second.orientations()))
+      .approached_from(stacked(first.previous(), second.previous()));
+}
+
+// Poses of the fit among fresh ones are left out, wherever they stand.
+TEST(VerifyCalibration, LeavesPosesOfTheFitOut) {
+  const auto of_fit = measure(actual(), poses_of(250, 1), noise, 2),
+             fresh = measure(actual(), poses_of(20, 1003), noise, 2003);
+  VerifyOptions options;
+  options.fitted_rows = calibration().fitted_rows;
+  const auto checked = [&](const Dataset<6>& data) {
+    return verify_calibration(calibration().model(), calibration().errors, data, options);
+  };
+  const Dataset<6> mixed =
+      joined(joined(of_fit.rows(std::vector<Index>{7, 3}), fresh), of_fit.rows(std::vector<Index>{100, 9, 200}));
+  const VerificationReport report = checked(mixed), plain = checked(fresh);
+  EXPECT_EQ(report.known, 5);
+  EXPECT_EQ(report.poses, 20);
+  EXPECT_EQ(report.chi_square, plain.chi_square);
+  EXPECT_NE(report.verdict().find(" 5 poses that it was fitted to are left out."), std::string::npos);
+  EXPECT_EQ(plain.known, 0);
+  EXPECT_EQ(plain.verdict().find("fitted to"), std::string::npos);
+  // what was learned is of the rows that are left
+  PointRows learned = PointRows::Zero(25, 3);
+  learned.row(2) << 1e-3, 0, 0;
+  const VerificationReport shifted =
+      verify_calibration(calibration().model(), calibration().errors, mixed, options, learned);
+  EXPECT_GT(shifted.errors(0), 0.7e-3);
+  // two others decide nothing
+  const VerificationReport two =
+      checked(joined(of_fit.rows(std::vector<Index>{7, 3, 20}), fresh.rows(std::vector<Index>{0, 1})));
+  EXPECT_EQ(two.poses, 5);
+  EXPECT_NE(two.verdict().find("it was fitted to, so that this confirms nothing."), std::string::npos);
+  EXPECT_EQ(checked(of_fit).poses, 250);
 }
 
 // The poses of the fit tell nothing; that is said where it is known, and asked where residuals are too small.

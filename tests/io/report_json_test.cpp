@@ -188,6 +188,7 @@ VerificationReport checked() {
   out.rotations_as_fitted = list({10e-3, 11e-3, 12e-3});
   out.normalised = list({0.1, 0.2, 0.3});
   out.aside = {2};
+  out.known = 4;
   out.mean_error = 1.5e-3;
   out.mean_upper = 2.5e-3;
   out.options.level = 0.01;
@@ -201,7 +202,7 @@ TEST(ReportJson, Verifications) {
   EXPECT_EQ(json.at("advice"), report.advice());
   EXPECT_EQ(json.at("stages").size(), 1u);  // without a registration the errors themselves
   expect_parts(json, R"({
-    "robot": "arm", "valid": true, "consistent": false, "poses": 3, "mean_mm": 1.5, "mean_upper_mm": 2.5,
+    "robot": "arm", "valid": true, "consistent": false, "poses": 3, "poses_left_out": 4, "mean_mm": 1.5, "mean_upper_mm": 2.5,
     "accept_mm": null, "level": 0.01, "chi_square": 12, "dof": 9, "p_value": 0.2, "aside": [2], "registration": null,
     "joints": [{"joint": 1, "unit": "mrad", "determined": true, "zero_change": 1e-3, "zero_std": 2e-3, "zero_p": 0.3,
                 "once_p": 0.4, "zero_changed": true, "transmission_changed": false},

@@ -6,7 +6,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
@@ -201,11 +203,36 @@ TEST(VerifyCalibrationProgram, AnUnchangedArmIsValidWhereverItStands) {
 TEST(VerifyCalibrationProgram, TheFileOfTheCalibrationConfirmsNothing) {
   const Reported& r = reported();
   const CommandResult checked = run(r.folder, "verify_calibration", "--model model.json --data poses.csv");
-  EXPECT_TRUE(has(checked.output, "The poses are those that it was fitted to, so that this confirms nothing."))
-      << checked.output << checked.errors;
+  // every fifth was held out
+  EXPECT_TRUE(has(checked.output, "120 poses that it was fitted to are left out.")) << checked.output << checked.errors;
+  EXPECT_TRUE(has(checked.output, "30 poses of poses.csv"));
   write_dataset(r.folder / "fresh.csv", seen(arm(), 25, 34));
   const CommandResult fresh = run(r.folder, "verify_calibration", "--model model.json --data fresh.csv");
   EXPECT_FALSE(has(fresh.output, "confirms nothing")) << fresh.output;
+}
+
+// In another order, in other units, cut: poses of the fit are recognised.
+TEST(VerifyCalibrationProgram, RowsOfTheCalibrationConfirmNothingInWhicheverFile) {
+  const Reported& r = reported();
+  const auto poses = read_dataset<6>(r.folder / "poses.csv");
+  std::vector<Index> fitted;
+  for (Index i = poses.size(); i-- > 0;)
+    if (i % 5 != 0) fitted.push_back(i);
+  std::string text = "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,x_mm,y_mm,z_mm\n";
+  for (const Index i : fitted) {
+    for (const double q : poses.joints(i)) text += message(q * (180 / std::numbers::pi), ',');
+    const Vector3 at = poses.position(i) * 1e3;
+    text += message(at.x(), ',', at.y(), ',', at.z(), '\n');
+  }
+  write_file(r.folder / "other_units.csv", text);
+  fitted.resize(25);
+  write_dataset(r.folder / "some.csv", poses.rows(fitted));
+  for (const char* file : {"other_units.csv", "some.csv"}) {
+    const CommandResult checked =
+        run(r.folder, "verify_calibration", message("--positions-only --model model.json --data ", file));
+    EXPECT_TRUE(has(checked.output, "The poses are those that it was fitted to, so that this confirms nothing."))
+        << checked.output << checked.errors;
+  }
 }
 
 TEST(VerifyCalibrationProgram, NamesTheJointWhoseZeroMoved) {

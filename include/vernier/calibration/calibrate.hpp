@@ -177,6 +177,7 @@ Calibration<ChainOf<Arm>> calibrate(const Arm& arm, const Measurements<ChainOf<A
       out = detail::fitted(nominal, kept, of_fit);
     }
   }
+  for (const Dataset<N>& all : measured.poses()) out.fitted_rows.add({all.joints(), all.positions()});
   out.outliers = std::move(outliers);
   out.outliers_kept = options.keep_outliers;
   const std::vector<Dataset<N>>& poses = kept.poses();

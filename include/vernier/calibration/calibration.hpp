@@ -22,6 +22,7 @@
 #include "vernier/identification/identified.hpp"
 #include "vernier/identification/in_one_frame.hpp"
 #include "vernier/measurements/measured_set.hpp"
+#include "vernier/measurements/row_fingerprints.hpp"
 
 namespace vernier {
 
@@ -79,6 +80,7 @@ struct Calibration {
   JointCoverage<dof> coverage{};  ///< measured ranges of the joints, or of motors that err, and the range of validity:
                                   ///< these widened a little
   Index poses = 0;                ///< number of poses it was fitted to
+  RowFingerprints fitted_rows{};  ///< of these, outliers included
   std::vector<FittedSet> others{};      ///< sets of measurements beside the poses
   bool oriented = false;                ///< whether orientations were used
   SensorModel sensors{};                ///< as given

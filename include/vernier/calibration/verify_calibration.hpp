@@ -16,6 +16,7 @@
 #include "vernier/core/rigid_motions.hpp"
 #include "vernier/error_model/error_model.hpp"
 #include "vernier/error_model/error_model_estimate.hpp"
+#include "vernier/measurements/row_fingerprints.hpp"
 #include "vernier/registration/reregister.hpp"
 
 namespace vernier {
@@ -32,7 +33,10 @@ struct VerifyOptions {
   /// Position error that the calibration states for poses it was not fitted to [m]; 0: unknown. Ten times as much left
   /// after registration is remarked upon.
   double expected_error = 0;
-  bool fitted_poses = false;   ///< the poses are known to be those that the calibration was fitted to
+  bool fitted_poses = false;  ///< the poses are known to be those that the calibration was fitted to
+  /// Poses that the calibration was fitted to. They are left out of the check, unless fewer than three others are left:
+  /// then all are as `fitted_poses` says.
+  RowFingerprints fitted_rows{};
   ControllerMap controller{};  ///< after whose joints the report names those of the chain
 
   /// @throws std::invalid_argument naming the value
@@ -71,6 +75,7 @@ struct VerificationReport {
   VectorX rotations{};            ///< orientation errors then [rad]; empty where they were not used
   VectorX rotations_as_fitted{};  ///< in the frames of the calibration, likewise
   VectorX normalised{};           ///< position errors in standard deviations of their predicted ellipsoids
+  Index known = 0;                ///< number of poses that were left out, see `VerifyOptions::fitted_rows`
   std::vector<Index> aside{};     ///< rows that contradict all others, left out of all tests
   RowOrigin origin{};             ///< where the rows stand in files
   double mean_error = 0;          ///< mean of `errors` but those aside [m]
@@ -136,10 +141,23 @@ VerificationReport verify_calibration(const ErrorModel<Chain>& model, const Erro
   options.validate();
   const Dataset<N>& data = detail::only_poses(measured, "verify_calibration");
   demand(data.size() >= 3, "verify_calibration: ", data.size(), " poses, at least 3 are needed");
-  demand(data.size() <= 1000, "verify_calibration: ", data.size(),
-         " poses, at most 1000 are taken: their covariance is dense");
   demand(learned.rows() == 0 || learned.rows() == data.size(), "verify_calibration: ", learned.rows(),
          " learned errors of ", data.size(), " poses");
+  if (const auto fresh = options.fitted_rows.others(data.joints(), data.positions());
+      static_cast<Index>(fresh.size()) < data.size()) {
+    VerifyOptions of_fresh = options;
+    of_fresh.fitted_rows = {};
+    of_fresh.fitted_poses = fresh.size() < 3;
+    if (of_fresh.fitted_poses) return verify_calibration(model, estimate, measured, of_fresh, learned);
+    PointRows of_rows(learned.rows() > 0 ? static_cast<Index>(fresh.size()) : 0, 3);
+    for (Index i = 0; i < of_rows.rows(); ++i) of_rows.row(i) = learned.row(fresh[static_cast<std::size_t>(i)]);
+    VerificationReport out =
+        verify_calibration(model, estimate, measured.with_poses({data.rows(fresh)}), of_fresh, of_rows);
+    out.known = data.size() - static_cast<Index>(fresh.size());
+    return out;
+  }
+  demand(data.size() <= 1000, "verify_calibration: ", data.size(),
+         " poses, at most 1000 are taken: their covariance is dense");
   const auto types = model.nominal().chain().joint_types();
   const MeasuredSet set = measured.sets().front().with(options.sensors);
   const auto checked = [&](const ErrorModel<Chain>& now, std::optional<ReregistrationReport> registration) {

@@ -70,12 +70,17 @@ CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Con
   demand(station < calibration.errors.models().size(), "calibrated_robot: station ", station, " of ",
          calibration.errors.models().size());
   const VectorX& left_out = calibration.errors.left_out_errors;
-  auto robot = CalibratedRobot<N, Convention>(
-                   info.name, calibration.model(station), info.limits,
-                   {info.data_file, calibration.poses, info.date, info.joints,
-                    calibration.oriented ? "poses" : "positions", calibration.errors.position_sigma,
-                    left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
-                    info.held_out_error, info.data_sha256})
+  Provenance from{info.data_file,
+                  calibration.poses,
+                  info.date,
+                  info.joints,
+                  calibration.oriented ? "poses" : "positions",
+                  calibration.errors.position_sigma,
+                  left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
+                  info.held_out_error,
+                  info.data_sha256};
+  from.fitted_rows = calibration.fitted_rows;
+  auto robot = CalibratedRobot<N, Convention>(info.name, calibration.model(station), info.limits, std::move(from))
                    .with_controller(info.controller);
   const LearnedRemainder<N>* learned = calibration.deployed();
   if (learned == nullptr || !learned->on_geometry)

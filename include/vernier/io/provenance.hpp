@@ -10,6 +10,7 @@
 #include "vernier/camera/camera_setup.hpp"
 #include "vernier/core/same_value.hpp"
 #include "vernier/core/types.hpp"
+#include "vernier/measurements/row_fingerprints.hpp"
 
 namespace vernier {
 
@@ -25,6 +26,7 @@ struct Provenance {
   double held_out_error = 0;            ///< mean position error of poses it was not fitted to [m]; 0: unknown
   std::string data_sha256{};            ///< of the bytes of those files, likewise joined; empty: unknown
   std::optional<CameraSetup> camera{};  ///< cameras and board, where images were measured
+  RowFingerprints fitted_rows{};        ///< of the poses it was fitted to; empty: unknown
 
   /// Whether it was fitted to a file with these bytes.
   /// @param sha256 of the bytes
@@ -39,7 +41,7 @@ struct Provenance {
     return data_file == other.data_file && rows == other.rows && date == other.date && joints == other.joints &&
            measured == other.measured && same_value(position_sigma, other.position_sigma) &&
            same_value(left_out_error, other.left_out_error) && same_value(held_out_error, other.held_out_error) &&
-           data_sha256 == other.data_sha256;
+           data_sha256 == other.data_sha256 && fitted_rows == other.fitted_rows;
   }
 };
 

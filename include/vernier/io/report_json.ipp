@@ -180,6 +180,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const VerificationReport& report, co
           {"consistent", report.consistent},
           {"verdict", report.verdict()},
           {"poses", report.poses},
+          {"poses_left_out", report.known},
           {"stages", stages_to_json(stages_of(report))},
           {"mean_mm", report.mean_error * 1e3},
           {"mean_upper_mm", std::isfinite(report.mean_upper) ? Json(report.mean_upper * 1e3) : Json()},

@@ -148,6 +148,7 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
   add_known("left_out_error_m", from.left_out_error);
   add_known("held_out_error_m", from.held_out_error);
   if (!from.data_sha256.empty()) out["provenance"]["data_sha256"] = from.data_sha256;
+  if (!from.fitted_rows.empty()) out["provenance"]["fitted_rows"] = from.fitted_rows.text();
   if (from.camera) out["provenance"]["camera"] = setup_to_json(*from.camera);
   out["joints"] = std::move(joints);
   if (!model.controller.same()) out["controller"] = controller_to_json(model);
@@ -227,6 +228,14 @@ VERNIER_IMPL ModelData parse_model(const std::string& content, const std::string
                         known("left_out_error_m"),
                         known("held_out_error_m"),
                         from.has("data_sha256") ? any_text(from.at("data_sha256")) : std::string()};
+  if (from.has("fitted_rows")) {
+    const JsonNode node = from.at("fitted_rows");
+    try {
+      provenance.fitted_rows = RowFingerprints::parse(node.text());
+    } catch (const std::invalid_argument& error) {
+      node.fail(error.what());
+    }
+  }
   if (from.has("camera")) provenance.camera = setup_from_json(from.at("camera"));
   const ChainTable nominal(std::move(rows), modified);
   ModelData out{root.at("name").text(),

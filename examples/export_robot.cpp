@@ -3,6 +3,7 @@
 // Universal Robots' driver, with what it loses against the full model.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <functional>
 #include <optional>
@@ -168,6 +169,39 @@ void print(const Settings& o, const vn::RobotDescription& robot, const Outcome& 
   for (const ExportedFile& file : out.files) fmt::print("Written: {}\n", support::shown(file.path));
 }
 
+/// A robot that no URDF file describes, as one.
+/// @param file for messages
+vn::UrdfChain plain_chain(const vn::RobotDescription& robot, const std::string& file) {
+  try {
+    return vn::parse_urdf(vn::urdf_text(robot), file);
+  } catch (const std::invalid_argument& error) {
+    throw support::UsageError(std::string("--urdf: ") + error.what());
+  }
+}
+
+/// A robot with the rows and frames of its URDF file.
+vn::RobotDescription between_its_links(const vn::RobotDescription& robot, const vn::UrdfChain& chain) {
+  vn::RobotDescription out = robot;
+  out.modified = false;
+  out.rows = chain.robot.rows;
+  out.base = chain.robot.base;
+  out.tool = chain.robot.tool;
+  out.down = out.base.linear().transpose() * robot.geometry().base().isometry().linear() * robot.chain_down();
+  return out;
+}
+
+/// What a URDF file cannot say of a robot.
+void print_conventions(const vn::RobotDescription& robot) {
+  if (!robot.controller.same())
+    fmt::print("The joints of the URDF file are those of the chain: {}, of the controller's J1 ..\n",
+               fmt::join(robot.controller.formulas(robot.joint_types()), ", "));
+  const vn::Vector3 down = robot.base.linear() * robot.down;
+  if ((down + vn::Vector3::UnitZ()).norm() > 1e-6)
+    fmt::print(
+        "Gravity acts along ({:.3g}, {:.3g}, {:.3g}) of base_link; give it with --down where the file is used.\n",
+        down.x(), down.y(), down.z());
+}
+
 support::Json to_json(const vn::ErrorStatistics& e) {
   return {{"mean_mm", e.mean * 1e3}, {"p95_mm", e.p95 * 1e3}, {"max_mm", e.max * 1e3}};
 }
@@ -195,7 +229,8 @@ int run(support::Program& program) {
       .within(2, 1000000);
   program.group(support::Group::output);
   program.add_output("--urdf", o.urdf,
-                     "write the file of --robot (URDF) with the calibrated origins of its joints to this file");
+                     "write a URDF file with the calibrated origins of its joints: that of --robot, or a plain one of "
+                     "links without shape");
   const support::Option kinematics = program.add_output(
       "--ur-kinematics", o.ur_kinematics, "write the kinematics file of Universal Robots' driver to this file");
   program
@@ -220,9 +255,6 @@ int run(support::Program& program) {
     throw support::UsageError("--with-base: contacts do not show where the base stands");
   if (o.urdf.empty() && o.ur_kinematics.empty())
     throw support::UsageError("nothing to write: one of --urdf and --ur-kinematics is required");
-  if (!o.urdf.empty() && !o.robot.is_urdf())
-    throw support::UsageError(
-        "--urdf writes joint origins into the file of --robot, which must be a URDF file (.urdf)");
   if (o.with_tool && !o.ur_kinematics.empty())
     throw support::UsageError("--with-tool: the kinematics file of --ur-kinematics ends at the flange, it has no tool");
   if (o.ur_hash.empty() || o.ur_hash.size() > 64 ||
@@ -231,9 +263,13 @@ int run(support::Program& program) {
     throw support::UsageError("--ur-hash takes up to 64 letters, digits and underscores, like calib_1234");
 
   vn::UrdfChain read;
-  const vn::RobotDescription robot = support::choose_robot(o.robot, &read);
+  vn::RobotDescription robot = support::choose_robot(o.robot, &read);
   std::optional<vn::UrdfChain> chain;
   if (o.robot.is_urdf()) chain = std::move(read);
+  if (!o.urdf.empty() && !chain) {
+    chain = plain_chain(robot, o.urdf);
+    robot = between_its_links(robot, *chain);
+  }
   if (o.with_tool && chain && chain->moving.back() + 1 == static_cast<int>(chain->joints.size()))
     throw support::UsageError("--with-tool: link '" + chain->tip_link +
                               "' is behind no fixed joint, which could hold the tool");
@@ -244,6 +280,7 @@ int run(support::Program& program) {
   working.finish();
   for (const ExportedFile& file : out.files) vn::write_file(file.path, file.text);
   print(o, robot, out);
+  if (!o.urdf.empty() && !o.robot.is_urdf()) print_conventions(robot);
   if (!program.common().json.empty()) {
     support::Json json{{"robot", robot.name},
                        {"train_rows", out.learned},

@@ -7,3 +7,4 @@
 
 #include "vernier/urdf/export_urdf.hpp"
 #include "vernier/urdf/ur_kinematics.hpp"
+#include "vernier/urdf/urdf_text.hpp"

@@ -180,6 +180,31 @@ TEST_F(ExportRobot, TheFactoryCalibrationIsANominalArm) {
   EXPECT_EQ(again.exit_code, 0) << again.errors;
 }
 
+// An arm that no URDF file describes: as its controller counts its joints, and hung from the ceiling.
+TEST_F(ExportRobot, OtherRobotsAsAPlainFile) {
+  for (const char* kind : {"fanuc", "ceiling", "scara", "positioner"}) {
+    const std::string robot = std::string("--robot ") + VERNIER_ROBOT_FILES + "/" + kind + ".json ";
+    for (const char* step : {"plan_poses:--count 40 --candidates 300 --orientations --out plan.csv",
+                             "simulate_measurements:--poses plan.csv --seed 2 --out seen.csv"}) {
+      const std::string text = step;
+      const auto done = run(text.substr(0, text.find(':')), robot + text.substr(text.find(':') + 1));
+      ASSERT_EQ(done.exit_code, 0) << kind << done.errors;
+    }
+    const auto done = run("export_robot", robot + "--data seen.csv --urdf plain.urdf --json out.json");
+    ASSERT_EQ(done.exit_code, 0) << kind << done.errors;
+    const nlohmann::json json = results();
+    EXPECT_LT(json["files"][0]["mean_mm"].get<double>(), 0.5 * json["as_designed"]["mean_mm"].get<double>()) << kind;
+    EXPECT_EQ(done.output.find("The joints of the URDF file are those of the chain") != std::string::npos,
+              kind == std::string("fanuc"));
+    EXPECT_EQ(done.output.find("Gravity acts along (0, 0, 1) of base_link") != std::string::npos,
+              kind == std::string("ceiling"))
+        << done.output;
+    // a robot like any other
+    const auto described = run("describe_robot", "--robot plain.urdf --out .");
+    EXPECT_EQ(described.exit_code, 0) << described.errors;
+  }
+}
+
 TEST_F(ExportRobot, MisuseIsOneLine) {
   const auto expect = [&](const std::string& program, const std::string& arguments, int code, const std::string& what) {
     const auto done = run(program, arguments);
@@ -193,7 +218,10 @@ TEST_F(ExportRobot, MisuseIsOneLine) {
   expect("export_robot", both, 2, "one of --urdf and --ur-kinematics is required");
   expect("export_robot", from_urdf + "--urdf o.urdf", 2, "--data is required (or --contacts)");
   expect("export_robot", from_urdf + "--contacts c.csv --with-base --urdf o.urdf", 2, "contacts do not show where");
-  expect("export_robot", "--robot ur10 --urdf out.urdf " + data, 2, "must be a URDF file (.urdf)");
+  write_file(path("endless.json"), R"({"name": "endless", "convention": "standard",
+    "joints": [{"type": "prismatic", "a_mm": 0, "alpha_deg": 90, "d_mm": 0, "theta_deg": 0},
+               {"a_mm": 500, "alpha_deg": 0, "d_mm": 0, "theta_deg": 0}]})");
+  expect("export_robot", "--robot endless.json --urdf o.urdf " + data, 2, "joint 1 slides and has no limits");
   expect("export_robot", "--robot ur10 --base-link base --ur-kinematics o.yaml " + data, 2, "are of a URDF file");
   expect("export_robot", both + "--ur-calibration calibration.conf --urdf o.urdf", 2, "--ur-calibration is for arms");
   expect("export_robot", "--robot arm.urdf --urdf o.urdf " + data, 1,

@@ -10,7 +10,9 @@
 
 #include "larger.hpp"
 #include "urdf_samples.hpp"
+#include "vernier/kinematics/robots.hpp"
 #include "vernier/urdf/export_urdf.hpp"
+#include "vernier/urdf/urdf_text.hpp"
 
 namespace vernier::urdf_kdl_test {
 namespace {
@@ -88,6 +90,15 @@ TEST(UrdfAgainstKdl, RandomTreesInAndOut) {
   Rng rng(2);
   for (int tree = 0; tree < 200 && !testing::Test::HasFailure(); ++tree)
     compare(vernier_test::random_tree_urdf(rng, 1 + tree % 9), "base", "tip", tree % 2 == 0, rng, 10);
+}
+
+TEST(UrdfAgainstKdl, CatalogueArmsAsPlainFiles) {
+  Rng rng(4);
+  for (const RobotDescription& robot :
+       {RobotDescription::of(robots::abb_irb120()), RobotDescription::of(robots::puma560()),
+        RobotDescription::of(robots::barrett_wam()), RobotDescription::of(robots::fanuc_r2000ib_165f())})
+    EXPECT_LE(worst_difference(robot.geometry(), Peer(urdf_text(robot), "base_link", "tool"), rng, 100), tolerance)
+        << robot.name;
 }
 
 // Rows next to singular ones: axes that are nearly parallel, upside down or the same.

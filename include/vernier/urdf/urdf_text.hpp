@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// @file
+/// An arm of the catalogue or of a robot file as a plain URDF file.
+
+#include <string>
+
+#include "vernier/io/robot_file.hpp"
+
+namespace vernier {
+
+/// A URDF file of an arm: links without shape from `base_link` to `tool`, joints about their z axes, one a joint of the
+/// chain, and a fixed one that holds the tool. Joint values are those of the chain, also where its controller counts
+/// them otherwise. Limits are those that the controller's limits allow; a revolute joint without limits is continuous.
+/// @throws std::invalid_argument for a prismatic joint without limits, which URDF does not know
+VERNIER_API std::string urdf_text(const RobotDescription& robot);
+
+}  // namespace vernier
+
+#if VERNIER_HEADER_ONLY
+#include "vernier/urdf/urdf_text.ipp"
+#endif

@@ -269,5 +269,60 @@ TEST(CorrectPath, WithoutClosedFormItFollowsTheBranchOfTheStart) {
   EXPECT_EQ(path.first_failure(), nullptr);
 }
 
+// More joints than a position has equations: the ends say how the others turn on the way.
+TEST(CorrectPath, AScaraTurnsItsToolAlongALine) {
+  const auto row = [](double a, double alpha, JointType type) { return DhRow{.a = a, .alpha = alpha, .joint = type}; };
+  const auto scara = DhChain<4>::from_rows({row(0.35, 0, JointType::revolute), row(0.25, pi, JointType::revolute),
+                                            row(0, 0, JointType::prismatic), row(0, 0, JointType::revolute)});
+  using Scara = ErrorModel<DhChain<4>>;
+  const Scara arm(scara, Scara::Arm({with_geometric_errors(scara, {}, 3), JointErrors()}));
+  const JointVector<4> from{0.4, 0.9, 0.1, -1.2};
+  for (const double turn : {0.05, 0.4, 2.5}) {
+    const JointVector<4> to{0.65, 0.7, 0.12, -1.2 + turn};
+    std::vector<PathTarget<4>> targets;
+    for (const JointVector<4>& q : {from, to, from})
+      targets.push_back(
+          {.pose = arm.nominal().pose(q), .joints = q, .motion = targets.empty() ? Motion::joint : Motion::linear});
+    const CorrectedPath<4> path = correct_path(arm, targets);
+    double before = path.points.front().command(3);
+    for (const auto& point : path.points) {
+      EXPECT_EQ(point.status, PointStatus::met) << turn;
+      EXPECT_LE(point.deviation, 0.05e-3);
+      EXPECT_LE(std::abs(point.command(3) - before), 0.5);  // evenly, not all of it at the end
+      before = point.command(3);
+      const double asked = targets[static_cast<std::size_t>(point.target)].joints(3);
+      EXPECT_TRUE(point.inserted || std::abs(point.command(3) - asked) < 0.02) << turn;
+    }
+  }
+}
+
+// Near a stretched elbow a command is far from the joint values it corrects; the line is as straight as any other.
+TEST(CorrectPath, LinesNearASingularityStayLines) {
+  std::vector<DhRow> rows;  // an arm whose links are longer must bend its elbow more
+  for (int i = 0; i < 6; ++i) {
+    rows.push_back(robot.chain.row(i));
+    rows.back().a *= 1.004;
+  }
+  const Model arm(
+      robot.chain,
+      Model::Arm({DhChain<6>::from_rows({rows[0], rows[1], rows[2], rows[3], rows[4], rows[5]}), JointErrors()}));
+  const auto line = [&](double elbow, double end) {
+    const JointVector<6> from{0.3, -1.2, elbow, -0.9, 1.0, 0.2}, to{0.6, -1.2, end, -0.7, 1.1, 0.6};
+    std::vector<PathTarget<6>> targets;
+    for (const JointVector<6>& q : {from, to})
+      targets.push_back(
+          {.pose = arm.nominal().pose(q), .joints = q, .motion = targets.empty() ? Motion::joint : Motion::linear});
+    return correct_path(arm, closed_form, targets, {.limits = robot.limits});
+  };
+  double farthest = 0;
+  for (const double elbow : {0.02, 0.05, 0.1, 0.2}) {
+    const CorrectedPath<6> path = line(elbow, elbow + 0.03);
+    farthest = (std::max)(farthest, std::abs(path.points.front().command(2) - elbow));
+    for (const auto& point : path.points) EXPECT_EQ(point.status, PointStatus::met) << elbow << ' ' << point.command;
+  }
+  EXPECT_GT(farthest, 0.1);
+  EXPECT_EQ(line(0.2, -0.2).points.back().status, PointStatus::jump);  // through it, on another branch
+}
+
 }  // namespace
 }  // namespace vernier::correct_path_test

@@ -70,7 +70,7 @@ struct BowedSlides {
     };
     const auto cost = [&](const PathJoints& q) { return cost_at ? cost_at(q(1)) : 0.0; };
     const auto branch_id = [&](const PathJoints& q) { return other_branch && q(1) == 2 ? 1 : id_at(q(0)); };
-    return detail::solve_path({2, branches, meet, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
+    return detail::solve_path({2, 2, branches, meet, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
                               settings);
   }
 };
@@ -136,10 +136,11 @@ TEST(PathSolverWhiteBox, ALineMayNotChangeTheBranch) {
 }
 
 TEST(PathSolverWhiteBox, ALineEndsWhereTheNominalArmComesTo) {
-  // off by more than 0.1 where the line ends: joint values of another turn, or of the same signs by chance
+  // a command farther from there than a step: joint values of another turn, or of the same signs by chance
   const auto ending = [](double off) { return last_status({.way = [=](double x) { return x == 1 ? off : 0; }}, 1); };
-  EXPECT_NE(ending(0.09), PointStatus::jump);
-  EXPECT_EQ(ending(0.11), PointStatus::jump);
+  EXPECT_NE(ending(0.11), PointStatus::jump);
+  EXPECT_NE(ending(1.9), PointStatus::jump);
+  EXPECT_EQ(ending(2.1), PointStatus::jump);
 }
 
 TEST(PathSolverWhiteBox, ThePiecesOfALineBeginWhereTheNominalArmIs) {

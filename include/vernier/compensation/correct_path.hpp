@@ -182,11 +182,11 @@ CorrectedPath<Arm::dof> correct_path(const Arm& arm, const Roots& closed_form,
   for (const PathTarget<N>& target : targets)
     goals.push_back(
         {target.pose, detail::all_finite(target.joints) ? PathJoints(target.joints) : PathJoints(), target.motion});
-  const SolvedPath solved =
-      solve_path({N, find_branches, correct, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
-                 {options.tolerance, N >= 6 ? options.rotation_tolerance : std::numeric_limits<double>::infinity(),
-                  options.max_joint_step, options.max_inserted, options.limits.lower, options.limits.upper,
-                  options.start, options.observer});
+  const SolvedPath solved = solve_path(
+      {N, N >= 6 ? 6 : 3, find_branches, correct, pose, nominal_pose, nominal_joints, cost, branch_id}, goals,
+      {options.tolerance, N >= 6 ? options.rotation_tolerance : std::numeric_limits<double>::infinity(),
+       options.max_joint_step, options.max_inserted, options.limits.lower, options.limits.upper, options.start,
+       options.observer});
   CorrectedPath<N> out;
   out.before = solved.before;
   out.after = solved.after;

@@ -50,6 +50,7 @@ struct PathBranch {
 /// What the path's solver has to know of an arm.
 struct PathArm {
   int joints;
+  int equations;  ///< of a target: 6, or 3 where positions alone are met
   /// Branches of the arm, whatever the direction of approach, at a target: appended; the reach is returned.
   FunctionRef<Reach(const Isometry3& target, const PathJoints& close_to, std::vector<PathBranch>& out)> branches;
   /// The command that brings the arm to a target, coming from another command; which may be not finite.

@@ -130,6 +130,7 @@ class PathSearch {
 
   VERNIER_LOCAL Reach find_branches(const PathGoal& goal, const PathJoints& close_to,
                                     std::vector<PathBranch>& out) const;
+  VERNIER_LOCAL PathJoints next_seed(const PathJoints& before, const PathJoints& end, int left) const;
   VERNIER_LOCAL std::optional<PathJoints> end_of_line(const PathState& from, const PathGoal& start,
                                                       const PathBranch& to, const PathGoal& end) const;
   VERNIER_LOCAL void advance(const std::vector<PathState>& before, const PathGoal* start, const PathGoal& goal,
@@ -157,7 +158,15 @@ VERNIER_IMPL Reach PathSearch::find_branches(const PathGoal& goal, const PathJoi
   return Reach::met;
 }
 
+/// Where the next joint values on the way from some to others are looked for: at those before, since the pose tells all
+/// joints; where there are more joints than equations, a share of the way farther, so that all joints arrive.
+/// @param left pieces that are left, this one included
+VERNIER_IMPL PathJoints PathSearch::next_seed(const PathJoints& before, const PathJoints& end, int left) const {
+  return arm_.joints > arm_.equations ? joints_at_share(before, end, 1.0 / left) : before;
+}
+
 /// The turns of a branch at which a linear move ends: the nominal arm follows the line where the joints change by much.
+/// It begins and ends where that arm has the poses, which may be far from the commands near a singularity.
 VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& from, const PathGoal& start,
                                                                const PathBranch& to, const PathGoal& end) const {
   constexpr double little = 0.2, step = 0.1;  // rad
@@ -166,15 +175,20 @@ VERNIER_IMPL std::optional<PathJoints> PathSearch::end_of_line(const PathState& 
   const double largest = largest_difference(close_to, from.joints);
   if (largest > little) {
     const int n = std::clamp(static_cast<int>(std::ceil(largest / step)), 4, 64);
-    PathJoints q = from.joints;
+    PathJoints q = from.joints, last = close_to;
+    if (!arm_.nominal_joints(end.pose, last) || largest_difference(last, close_to) > settings_.max_joint_step)
+      return std::nullopt;
+    if (!arm_.nominal_joints(start.pose, q)) q = from.joints;
     for (int k = 1; k <= n; ++k) {
       const PathJoints before = q;
+      q = next_seed(before, last, n - k + 2);
       if (!arm_.nominal_joints(interpolated(start.pose, end.pose, static_cast<double>(k) / n), q) ||
           largest_difference(q, before) > settings_.max_joint_step || arm_.branch_id(q) != from.id)
         return std::nullopt;
     }
     close_to = turned(to.joints, q);
-    if (largest_difference(close_to, q) > 0.1) return std::nullopt;
+    last = turned(last, q);
+    if (largest_difference(last, q) > 0.1) return std::nullopt;
   }
   return within(close_to) ? std::optional<PathJoints>(close_to) : std::nullopt;
 }
@@ -253,7 +267,8 @@ VERNIER_IMPL bool PathSearch::fill_line(const PathJoints& coming_from, const Pat
   for (int k = 1; k <= pieces; ++k) {
     const double share = static_cast<double>(k) / pieces;
     const Isometry3 wanted = k == pieces ? end : interpolated(start, end, share);
-    SolvedPoint point{k == pieces ? close_to : tracked, 0, k < pieces, PointStatus::met, 0, 0};
+    SolvedPoint point{
+        k == pieces ? close_to : next_seed(tracked, close_to, pieces - k + 1), 0, k < pieces, PointStatus::met, 0, 0};
     if (k < pieces) {
       if (!arm_.nominal_joints(wanted, point.command)) return false;
       tracked = point.command;

@@ -279,7 +279,8 @@ TEST(BadInput, ModelFiles) {
   reader.expect_refused(with("/convention", "modified"), "a chain of the other convention");
   reader.expect_refused(with("/provenance/rows", -1), "fewer than no rows");
   reader.expect_refused(with("/provenance/rows", 1.5), "half a row");
-  reader.expect_refused(with("/provenance/fitted_rows", "0123456x"), "a row that is no number");
+  reader.expect_refused(with("/provenance/fitted_rows", {1, 2.5}), "a row that is no number");
+  reader.expect_refused(with("/provenance/fitted_rows", {4294967296u}), "a row of more than 32 bits");
   reader.expect_refused(with("/learned/hidden_nodes", 0), "no nodes");
   reader.expect_refused(with("/learned/hidden_nodes", 5), "a node more than weights");
   reader.expect_refused(with("/learned/hidden_nodes", 100001), "too many nodes");

@@ -188,6 +188,13 @@ TEST_F(FileRules, ModelsSayWhatTheyAre) {
   const ElmPredictor<6, 3> network(layer, {VectorX::Zero(6), VectorX::Ones(6)}, layer.draw(6, 2), beta,
                                    Vector3(1e-4, 2e-4, 3e-4));
   Provenance from{"poses.csv", 30, "2024-05-01", "encoder", "positions", 1e-5, 2e-5, 3e-5};
+  for (int file = 0; file < 40; ++file) {  // of a calibration from many files
+    from.data_file += message(",session_", file, ".csv");
+    from.data_sha256 += (file > 0 ? "," : "") + std::string(64, 'a');
+  }
+  std::vector<std::uint32_t> rows{0, 4294967295u};
+  for (std::uint32_t i = 1; i < 3000; ++i) rows.push_back(i * 1000003u);
+  from.fitted_rows = RowFingerprints(std::move(rows));
   const CalibratedRobot<6> plain(
       "arm",
       Model(robot.chain, arm, Model::Arm(robot.chain), gate).with_thermal({22, 20, 24, VectorX::Constant(42, 1e-6)}),

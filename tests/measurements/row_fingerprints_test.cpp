@@ -57,27 +57,22 @@ TEST(RowFingerprints, TellFreshMeasurementsOfTheSameConfigurations) {
   EXPECT_EQ(known.others(elsewhere.joints(), elsewhere.positions()).size(), 2000u);
 }
 
-TEST(RowFingerprints, AddUpAndAreKeptAsText) {
+TEST(RowFingerprints, AddUpAndAreKept) {
   const Rows first(20, 4, 1), second(30, 4, 2);
   RowFingerprints known(first.joints(), first.positions());
   EXPECT_EQ(known.others(second.joints(), second.positions()).size(), 30u);
   known.add({second.joints(), second.positions()});
   EXPECT_TRUE(known.others(second.joints(), second.positions()).empty());
-  EXPECT_EQ(known.text().size(), 400u);
-  EXPECT_EQ(RowFingerprints::parse(known.text()), known);
+  EXPECT_EQ(known.values().size(), 50u);
+  EXPECT_EQ(RowFingerprints(known.values()), known);
+  EXPECT_EQ(RowFingerprints(std::vector<std::uint32_t>(known.values().rbegin(), known.values().rend())), known);
   EXPECT_TRUE(RowFingerprints().empty());
-  EXPECT_EQ(RowFingerprints::parse(""), RowFingerprints());
-  EXPECT_EQ(RowFingerprints::parse("00000010000000ff").text(), "00000010000000ff");
 }
 
-TEST(RowFingerprints, RefuseOtherText) {
-  const auto told = [](const char* text) {
-    return vernier_test::complaint([&] { static_cast<void>(RowFingerprints::parse(text)); });
-  };
-  EXPECT_EQ(told("0123"), "RowFingerprints: 4 characters, eight are one row");
-  EXPECT_EQ(told("0123456g"), "RowFingerprints: '0123456g' is no number of eight hexadecimal digits");
-  EXPECT_NE(told("-1234567"), "");
-  EXPECT_NE(vernier_test::complaint([] { RowFingerprints(MatrixX::Zero(2, 6), MatrixX::Zero(3, 3)); }), "");
+TEST(RowFingerprints, NeedAPositionARow) {
+  EXPECT_EQ(
+      vernier_test::complaint([] { static_cast<void>(RowFingerprints(MatrixX::Zero(2, 6), MatrixX::Zero(3, 3))); }),
+      "RowFingerprints: 2 rows of joints and 3 positions");
 }
 
 }  // namespace

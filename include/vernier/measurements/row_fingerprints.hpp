@@ -5,8 +5,6 @@
 /// Rows that a model was fitted to, recognised again: a check with them would confirm nothing.
 
 #include <cstdint>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "vernier/core/api.hpp"
@@ -24,11 +22,10 @@ class RowFingerprints {
   /// @param joints    n x joints, of the chain [rad, m]
   /// @param positions n x 3 [m]
   VERNIER_API RowFingerprints(const ConstMatrixRef& joints, const ConstMatrixRef& positions);
-  /// Reads what `text` wrote.
-  /// @throws std::invalid_argument for other text
-  VERNIER_API static RowFingerprints parse(std::string_view text);
-  /// Eight hexadecimal digits a row.
-  VERNIER_API std::string text() const;
+  /// @param values as `values` gave them, in any order
+  VERNIER_API explicit RowFingerprints(std::vector<std::uint32_t> values);
+  /// The numbers in order, one a row.
+  const std::vector<std::uint32_t>& values() const { return sorted_; }
 
   /// Adds rows.
   VERNIER_API void add(const RowFingerprints& other);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "vernier/core/check.hpp"
 #include "vernier/measurements/row_fingerprints.hpp"
@@ -37,27 +37,8 @@ VERNIER_IMPL RowFingerprints::RowFingerprints(const ConstMatrixRef& joints, cons
   std::sort(sorted_.begin(), sorted_.end());
 }
 
-VERNIER_IMPL RowFingerprints RowFingerprints::parse(std::string_view text) {
-  demand(text.size() % 8 == 0, "RowFingerprints: ", text.size(), " characters, eight are one row");
-  RowFingerprints out;
-  for (std::size_t at = 0; at < text.size(); at += 8) {
-    const char *begin = text.data() + at, *end = begin + 8;
-    std::uint32_t value = 0;
-    const auto [stopped, error] = std::from_chars(begin, end, value, 16);
-    demand(error == std::errc() && stopped == end, "RowFingerprints: '", text.substr(at, 8),
-           "' is no number of eight hexadecimal digits");
-    out.sorted_.push_back(value);
-  }
-  std::sort(out.sorted_.begin(), out.sorted_.end());
-  return out;
-}
-
-VERNIER_IMPL std::string RowFingerprints::text() const {
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string out;
-  for (const std::uint32_t value : sorted_)
-    for (int shift = 28; shift >= 0; shift -= 4) out += digits[(value >> shift) & 15u];
-  return out;
+VERNIER_IMPL RowFingerprints::RowFingerprints(std::vector<std::uint32_t> values) : sorted_(std::move(values)) {
+  std::sort(sorted_.begin(), sorted_.end());
 }
 
 VERNIER_IMPL void RowFingerprints::add(const RowFingerprints& other) {

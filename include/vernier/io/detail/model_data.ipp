@@ -148,7 +148,7 @@ VERNIER_IMPL OrderedJson model_to_json(const ModelData& model) {
   add_known("left_out_error_m", from.left_out_error);
   add_known("held_out_error_m", from.held_out_error);
   if (!from.data_sha256.empty()) out["provenance"]["data_sha256"] = from.data_sha256;
-  if (!from.fitted_rows.empty()) out["provenance"]["fitted_rows"] = from.fitted_rows.text();
+  if (!from.fitted_rows.empty()) out["provenance"]["fitted_rows"] = from.fitted_rows.values();
   if (from.camera) out["provenance"]["camera"] = setup_to_json(*from.camera);
   out["joints"] = std::move(joints);
   if (!model.controller.same()) out["controller"] = controller_to_json(model);
@@ -214,7 +214,8 @@ VERNIER_IMPL ModelData parse_model(const std::string& content, const std::string
     read_limits_of(joint, type, lower(i), upper(i));
   }
   const JsonNode from = root.at("provenance");
-  const auto any_text = [](const JsonNode& node) { return node.is_empty_text() ? std::string() : node.text(); };
+  constexpr std::size_t longest = 100000;  // names and hashes of many files
+  const auto any_text = [](const JsonNode& node) { return node.is_empty_text() ? std::string() : node.text(longest); };
   const auto one_of = [&](const char* key, const auto& names) {
     return std::string(names[static_cast<std::size_t>(named(from.at(key), names))]);
   };
@@ -230,11 +231,10 @@ VERNIER_IMPL ModelData parse_model(const std::string& content, const std::string
                         from.has("data_sha256") ? any_text(from.at("data_sha256")) : std::string()};
   if (from.has("fitted_rows")) {
     const JsonNode node = from.at("fitted_rows");
-    try {
-      provenance.fitted_rows = RowFingerprints::parse(node.text());
-    } catch (const std::invalid_argument& error) {
-      node.fail(error.what());
-    }
+    std::vector<std::uint32_t> values;
+    for (std::size_t i = 0; i < node.size(); ++i)
+      values.push_back(static_cast<std::uint32_t>(node.at(i).integer(0, UINT32_MAX)));
+    provenance.fitted_rows = RowFingerprints(std::move(values));
   }
   if (from.has("camera")) provenance.camera = setup_from_json(from.at("camera"));
   const ChainTable nominal(std::move(rows), modified);

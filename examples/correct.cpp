@@ -38,6 +38,9 @@ namespace vn = vernier;
 struct Settings {
   std::string model, targets, out;
   support::CsvOptions csv;
+  /// Where targets are poses of the controller: its base in the frame of the chain, and its tool in the chain's last
+  /// one.
+  std::optional<std::pair<vn::Isometry3, vn::Isometry3>> controller{};
   bool poses = false;     ///< of a file with joints and poses, the poses are the targets
   bool approach = true;   ///< commands are executed in their order
   bool linear = false;    ///< all moves are linear
@@ -73,7 +76,9 @@ std::vector<vn::PathTarget<N>> read_targets(const Settings& settings, const vn::
   const bool joints = file.joints.rows() > 0, poses = file.positions.rows() > 0 && (settings.poses || !joints);
   if (settings.poses && file.positions.rows() == 0)
     throw vn::DataError(settings.targets + ": no columns x_mm, y_mm, z_mm");
-  if (poses && N >= 6 && file.orientations.rows() == 0)
+  if (settings.controller && !poses)
+    throw vn::DataError(settings.targets + ": --frame base is of poses; there are joints, and no --poses");
+  if (poses && (N >= 6 || settings.controller) && file.orientations.rows() == 0)
     throw vn::DataError(vn::message(settings.targets, ": no columns rx_rad, ry_rad, rz_rad; a pose of an arm of ", N,
                                     " joints has an orientation"));
   std::vector<vn::PathTarget<N>> out;
@@ -88,6 +93,10 @@ std::vector<vn::PathTarget<N>> read_targets(const Settings& settings, const vn::
       target.pose.translation() = file.positions.row(i).transpose();
       if (file.orientations.rows() > 0)
         target.pose.linear() = vn::exp_so3(vn::Vector3(file.orientations.row(i).transpose()));
+      if (settings.controller) {  // where the measured point is when the controller's tool is there
+        const auto& [base, tool] = *settings.controller;
+        target.pose = robot.nominal().base() * base * target.pose * tool.inverse() * robot.nominal().tool();
+      }
     }
     const bool linear = file.linear.empty() ? settings.linear : file.linear[static_cast<std::size_t>(i)];
     target.motion = linear ? vn::Motion::linear : vn::Motion::joint;
@@ -160,6 +169,15 @@ std::vector<Run<N>> runs_of(const std::vector<vn::PathTarget<N>>& targets, const
 template <int N>
 std::vector<double> shown_joints(const vn::JointVector<N>& q, const vn::JointChange<N>& change) {
   return {q.data(), q.data() + change.moving()};
+}
+
+/// The pose that the controller shows at joint values of the chain.
+template <int N>
+std::optional<vn::Isometry3> commanded_pose(const Settings& settings, const vn::CalibratedRobot<N>& robot,
+                                            const vn::JointVector<N>& chain) {
+  if (!settings.controller || !chain.allFinite()) return std::nullopt;
+  const auto& [base, tool] = *settings.controller;
+  return base.inverse() * robot.nominal().chain().pose(chain) * tool;
 }
 
 /// The row of a target without any command.
@@ -302,6 +320,7 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
                            p.singularities,
                            {}});
     if (p.command.allFinite()) report.rows.back().point = arm.position(p.command);
+    report.rows.back().commanded = commanded_pose<N>(settings, robot, arm.change().to_chain(p.command));
   }
   if (settings.radius && !settings.branches && saved.estimate() != nullptr) {
     constexpr vn::Index block = 64;  // at a time, each command for itself
@@ -320,6 +339,7 @@ int run(support::Program& program) {
   Settings settings;
   support::ProgramCorrection in_place;
   bool no_approach = false, no_radius = false;
+  std::string frame = "measured";
   program.add_option("--model", settings.model, "calibrated model that calibrate saved", "FILE").required();
   program
       .add_option("--targets", settings.targets,
@@ -334,6 +354,14 @@ int run(support::Program& program) {
   program.group(support::Group::input);
   program.add_flag("--poses", settings.poses,
                    "of a file with joints and poses, the poses are the targets; the joints choose the branch");
+  program
+      .add_setting(
+          "--frame", frame,
+          "of poses in --targets: that of the measurements, where the measured point goes, or the robot's base, "
+          "as the pendant shows poses of the tool of --tool (by default the flange); then the commands are "
+          "given as such poses, too",
+          "measured|base")
+      .one_of({"measured", "base"});
   program.group(support::Group::model);
   program.add_flag("--linear", settings.linear, "all moves are linear, where the file has no column move");
   program
@@ -371,11 +399,30 @@ int run(support::Program& program) {
   settings.radius = !no_radius;
   if (settings.targets.empty() == in_place.program.empty())
     throw support::UsageError("either --targets or --program is required");
+  const bool base_frame = frame == "base";
+  for (const char* option : {"--tool", "--robot-base", "--flange"})
+    if (in_place.program.empty() && !base_frame && program.given(option))
+      throw support::UsageError(fmt::format("{} is of a --program, or of poses with --frame base", option));
+  for (const char* option :
+       {"--controller", "--workobject", "--noflip", "--assume-harmless", "--date", "--allow-uncorrected"})
+    if (in_place.program.empty() && program.given(option))
+      throw support::UsageError(fmt::format("{} is of a --program", option));
+  if (!in_place.program.empty() && base_frame) throw support::UsageError("--frame is of --targets");
   if (!in_place.program.empty())
     return support::correct_program(
         in_place, {settings.model, settings.out, program.common().json, settings.temperature, settings.payload,
                    settings.start, settings.approach});
 
+  if (base_frame) {
+    const auto frame_or_none = [](const std::string& text, const char* option) {
+      return text.empty() ? vn::Isometry3(vn::Isometry3::Identity()) : support::frame_of(text, option);
+    };
+    if (settings.branches) throw support::UsageError("--frame base: not with --all-branches");
+    if (in_place.tools.size() > 1) throw support::UsageError("--frame base: one --tool alone");
+    settings.controller.emplace(frame_or_none(in_place.robot_base, "--robot-base"),
+                                frame_or_none(in_place.flange, "--flange") *
+                                    frame_or_none(in_place.tools.empty() ? "" : in_place.tools.front(), "--tool"));
+  }
   const vn::SavedModel model = vn::read_model(settings.model);
   const support::CorrectionReport report =
       support::dispatch_dof(model.dof(), [&](auto n) { return correct_arm<n()>(settings, model); });

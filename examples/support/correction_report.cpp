@@ -8,6 +8,7 @@
 
 #include "figures.hpp"
 #include "vernier/core/check.hpp"
+#include "vernier/core/so3.hpp"
 
 namespace support {
 namespace {
@@ -107,19 +108,33 @@ CorrectionTotals totals(const CorrectionReport& report) {
   return out;
 }
 
+namespace {
+
+/// Six columns: position [mm] and rotation vector [rad].
+std::string pose_columns(const vn::Isometry3& pose) {
+  const vn::Vector3 at = pose.translation() * 1e3, turn = vn::log_so3(pose.linear());
+  return vn::message(',', at.x(), ',', at.y(), ',', at.z(), ',', turn.x(), ',', turn.y(), ',', turn.z());
+}
+
+}  // namespace
+
 std::string correction_csv(const CorrectionReport& report) {
   std::string text;
   for (std::size_t j = 0; j < report.joints.size(); ++j)
     text += vn::message("q", j + 1, report.joints[j] == vn::JointType::revolute ? "_rad," : "_m,");
   text +=
       "status,predicted_error_mm,gate,target,point,predicted_rotation_mrad,deviation_mm,radius95_mm,"
-      "singularity,singularity_deg\n";
+      "singularity,singularity_deg";
+  const bool poses = std::any_of(report.rows.begin(), report.rows.end(),
+                                 [](const CommandRow& row) { return row.commanded.has_value(); });
+  text += poses ? ",x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad\n" : "\n";
   for (const CommandRow& row : report.rows) {
     for (const double q : row.command) text += vn::message(q, ',');
     text += vn::message(row.status, ',', row.error * 1e3, ',', row.gate, ',', row.target, ',', row.kind, ',',
                         row.rotation * 1e3, ',', row.deviation * 1e3, ',', row.radius * 1e3, ',',
                         row.singularities.nearest(), ',');
     if (row.singularities.known) text += vn::message(row.singularities.nearest_angle() * 180 / std::numbers::pi);
+    if (poses) text += row.commanded ? pose_columns(*row.commanded) : ",,,,,,";
     text += '\n';
   }
   return text;

@@ -31,6 +31,7 @@ struct CommandRow {
   std::vector<vernier::Vector3> links{};  ///< origins of the joints and the tool [m]; of branches
   double radius = std::nan("");           ///< of 95 % [m]
   vernier::Vector3 point = vernier::Vector3::Constant(std::nan(""));  ///< where the model sees the tool [m]
+  std::optional<vernier::Isometry3> commanded{};  ///< the pose to command, where targets are poses of the controller
 };
 
 /// All commands of one run.

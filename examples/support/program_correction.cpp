@@ -26,26 +26,6 @@ namespace {
 
 namespace vn = vernier;
 
-/// x,y,z in mm and a rotation vector in degrees.
-/// @throws UsageError naming the option
-vn::Isometry3 frame_of(const std::string& text, const char* option) {
-  vn::Vector6 values;
-  const char* at = text.data();
-  const char* const end = text.data() + text.size();
-  for (vn::Index k = 0; k < 6; ++k) {
-    while (at != end && *at == ' ') ++at;
-    const auto [next, error] = std::from_chars(at, end, values(k));
-    const bool last = k == 5;
-    if (error != std::errc() || !std::isfinite(values(k)) || (last ? next != end : next == end || *next != ','))
-      throw UsageError(fmt::format("{} {}: not six numbers x,y,z,rx,ry,rz [mm, deg]", option, text));
-    at = last ? next : next + 1;
-  }
-  vn::Isometry3 out = vn::Isometry3::Identity();
-  out.translation() = values.head<3>() * 1e-3;
-  out.linear() = vn::exp_so3(vn::Vector3(values.tail<3>() * std::numbers::pi / 180));
-  return out;
-}
-
 std::string lower_case(std::string text) {
   for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   return text;
@@ -144,6 +124,24 @@ bool names(const std::string& text, const std::string& name) {
 
 }  // namespace
 
+vn::Isometry3 frame_of(const std::string& text, const char* option) {
+  vn::Vector6 values;
+  const char* at = text.data();
+  const char* const end = text.data() + text.size();
+  for (vn::Index k = 0; k < 6; ++k) {
+    while (at != end && *at == ' ') ++at;
+    const auto [next, error] = std::from_chars(at, end, values(k));
+    const bool last = k == 5;
+    if (error != std::errc() || !std::isfinite(values(k)) || (last ? next != end : next == end || *next != ','))
+      throw UsageError(fmt::format("{} {}: not six numbers x,y,z,rx,ry,rz [mm, deg]", option, text));
+    at = last ? next : next + 1;
+  }
+  vn::Isometry3 out = vn::Isometry3::Identity();
+  out.translation() = values.head<3>() * 1e-3;
+  out.linear() = vn::exp_so3(vn::Vector3(values.tail<3>() * std::numbers::pi / 180));
+  return out;
+}
+
 void add_program_options(Program& program, ProgramCorrection& to) {
   program.add_option(
       "--program", to.program,
@@ -156,11 +154,11 @@ void add_program_options(Program& program, ProgramCorrection& to) {
       "Universal Robots arm; by default nominal, and URScript poses stay as they are",
       "nominal|FILE");
   program
-      .add_option("--tool", to.tools,
-                  "tool frame of a program's poses, in the flange's: position [mm] and rotation vector [deg], or the "
-                  "name of one "
-                  "in the file; NAME=... gives that of one name or number",
-                  "[NAME=]X,Y,Z,RX,RY,RZ")
+      .add_option(
+          "--tool", to.tools,
+          "tool frame of a program's poses, or of those of --frame base, in the flange's: position [mm] and rotation "
+          "vector [deg], or the name of one in the program; NAME=... gives that of one name or number",
+          "[NAME=]X,Y,Z,RX,RY,RZ")
       .one_value_each();
   program
       .add_option("--workobject", to.workobjects,

@@ -10,6 +10,7 @@
 
 #include "cli.hpp"
 #include "payload_option.hpp"
+#include "vernier/core/types.hpp"
 
 namespace support {
 
@@ -37,6 +38,10 @@ struct CorrectionInput {
   std::vector<double> start{};          ///< joint values before the first target [rad]
   bool approach = true;                 ///< whether commands are executed in the order of the text
 };
+
+/// A frame x,y,z,rx,ry,rz: position in mm and rotation vector in degrees.
+/// @throws UsageError naming the option
+vernier::Isometry3 frame_of(const std::string& text, const char* option);
 
 /// Adds the options of a program's correction.
 void add_program_options(Program& program, ProgramCorrection& to);

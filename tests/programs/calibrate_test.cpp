@@ -184,9 +184,18 @@ TEST(Calibrate, SaysWhatItDidAndWhereItIs) {
 TEST(Calibrate, TheSavedModelPredictsFreshPoses) {
   const auto model = load<6>(calibration().folder / "model.json");
   const Provenance& from = model.provenance();
-  EXPECT_EQ(from,
-            (Provenance{"poses.csv", 120, "2024-05-01", "commanded", "poses", from.position_sigma, from.left_out_error,
-                        from.held_out_error, sha256(read_file(calibration().folder / "poses.csv"))}));
+  EXPECT_EQ(from, (Provenance{"poses.csv",
+                              120,
+                              "2024-05-01",
+                              "commanded",
+                              "poses",
+                              from.position_sigma,
+                              from.left_out_error,
+                              from.held_out_error,
+                              sha256(read_file(calibration().folder / "poses.csv")),
+                              {},
+                              from.fitted_rows}));
+  EXPECT_EQ(from.fitted_rows.values().size(), 120u);
   EXPECT_NEAR(from.left_out_error, from.held_out_error, from.held_out_error);
   EXPECT_GT(from.held_out_error, 0);
   EXPECT_NEAR(from.position_sigma, 0.03e-3, 0.01e-3);

@@ -112,6 +112,50 @@ TEST_F(Correct, PosesAsTargetsGiveTheSameCommands) {
   EXPECT_NE(points.errors.find("points.csv: no columns rx_rad"), std::string::npos) << points.errors;
 }
 
+// A pose of the pendant and the joint values that it has there are the same target; the command is given as a pose,
+// too.
+TEST_F(Correct, PosesOfThePendantAreThoseOfItsTool) {
+  const Isometry3 base = FrameParameters(Vector6{0.1, 0, -0.4, 0, 0, 0.3}).isometry(),
+                  tool = FrameParameters(Vector6{0.02, -0.03, 0.15, 0.4, 0, 0}).isometry();
+  const auto shown = [&](const JointVector<6>& q) {
+    return Isometry3(base.inverse() * catalogue_.chain.pose(q) * tool);
+  };
+  PointRows positions(30, 3), orientations(30, 3);
+  for (Index i = 0; i < 30; ++i) {
+    const Isometry3 pose = shown(targets_.row(i).transpose());
+    set_point(positions, i, translation(pose));
+    set_point(orientations, i, log_so3(rotation(pose)));
+  }
+  write_dataset(folder_ / "pendant.csv", Dataset<6>(targets_, positions, orientations));
+  write_dataset(folder_ / "targets.csv", Dataset<6>(targets_, PointRows::Zero(30, 3)));
+  ASSERT_EQ(correct("--targets targets.csv --out a.csv").exit_code, 0);
+  const std::string frames = " --robot-base 100,0,-400,0,0," + message(0.3 * 180 / std::numbers::pi) +
+                             " --tool 20,-30,150," + message(0.4 * 180 / std::numbers::pi) + ",0,0";
+  const CommandResult done = correct("--targets pendant.csv --poses --frame base --out b.csv" + frames);
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  const auto joints = read_joints<6>(folder_ / "b.csv");
+  EXPECT_LT(vernier_test::difference(read_joints<6>(folder_ / "a.csv"), joints), 1e-8);
+  const auto commanded = read_dataset<6>(folder_ / "b.csv");
+  for (Index i = 0; i < 30; ++i) {
+    const Isometry3 pose = shown(joints.row(i).transpose());
+    EXPECT_LT((commanded.position(i) - translation(pose)).norm(), 1e-9);
+    EXPECT_LT(rotation_difference(rotation(pose), exp_so3(point(commanded.orientations(), i))).norm(), 1e-9);
+  }
+  EXPECT_EQ(lines("a.csv").at(0).find("x_mm"), std::string::npos);
+
+  const auto refused = [&](const std::string& arguments, int code, const std::string& reason) {
+    const CommandResult result = correct(arguments);
+    EXPECT_EQ(result.exit_code, code) << result.errors;
+    EXPECT_TRUE(result.one_line_of_errors()) << result.errors;
+    EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
+  };
+  refused("--targets pendant.csv --frame base --out c.csv", 1, "--frame base is of poses; there are joints");
+  refused("--targets pendant.csv --poses --out c.csv" + frames, 2, "--tool is of a --program, or of poses");
+  refused("--targets pendant.csv --noflip positive --out c.csv", 2, "--noflip is of a --program");
+  refused("--targets pendant.csv --poses --frame base --tool hand --out c.csv", 2, "--tool hand: not six numbers");
+  refused("--targets pendant.csv --frame tool --out c.csv", 2, "--frame");
+}
+
 TEST_F(Correct, EachCommandComesFromTheOneBefore) {
   JointTerms terms(6);
   terms.hysteresis = {0.02};

@@ -75,6 +75,9 @@ TEST(ControllerMap, TypesFollowTheChain) {
 }
 
 TEST(ControllerMap, ComplaintsNameTheFormula) {
+  EXPECT_EQ(refused({"J1", "J\xD3\x9A\n2"}),
+            "formula 'J???2': J needs the number of a controller joint, counted from 1");
+  EXPECT_LT(refused({"J1", "J" + std::string(5000, 'x')}).size(), 200u);
   EXPECT_EQ(refused({"J1", "J0"}), "formula 'J0': J needs the number of a controller joint, counted from 1");
   EXPECT_EQ(refused({"J1 J2"}), "formula 'J1 J2': '+' or '-' expected");
   EXPECT_EQ(refused({"J1 + 90"}), "formula 'J1 + 90': a number needs its unit: deg, rad, mm or m");

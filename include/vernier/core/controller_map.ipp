@@ -11,6 +11,7 @@
 #include "vernier/core/check.hpp"
 #include "vernier/core/controller_map.hpp"
 #include "vernier/core/detail/number_text.hpp"
+#include "vernier/core/detail/quotable.hpp"
 
 namespace vernier {
 
@@ -29,7 +30,8 @@ class FormulaReader {
 
  private:
   [[noreturn]] void fail(std::string_view what) const {
-    throw_invalid_argument({MessagePart(std::string_view("formula '")), MessagePart(text_),
+    const std::string said = quotable(text_);
+    throw_invalid_argument({MessagePart(std::string_view("formula '")), MessagePart(std::string_view(said)),
                             MessagePart(std::string_view("': ")), MessagePart(what)});
   }
   void skip() {

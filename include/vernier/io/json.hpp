@@ -15,14 +15,12 @@
 #include "vernier/core/atomic_file.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/data_error.hpp"
+#include "vernier/core/detail/quotable.hpp"
 #include "vernier/core/types.hpp"
 
 namespace vernier {
 
 namespace detail {
-
-/// Text from a file, for a message: short, printable, on one line.
-VERNIER_API std::string quotable(std::string_view text, std::size_t limit = 60);
 
 /// The text of a JSON file.
 /// @throws DataError naming the file, also where it has more than 32 MiB

@@ -17,12 +17,6 @@ namespace detail {
 
 inline constexpr std::size_t largest_json = std::size_t{32} << 20;  // bytes
 
-VERNIER_IMPL std::string quotable(std::string_view text, std::size_t limit) {
-  std::string out;
-  for (const char c : text.substr(0, limit)) out += c >= ' ' && c <= '~' ? c : '?';
-  return out + (text.size() > limit ? "..." : "");
-}
-
 VERNIER_IMPL std::string read_json_text(const std::string& path) {
   try {
     return read_file(path, largest_json);

@@ -370,8 +370,8 @@ VERNIER_IMPL std::string VerificationReport::verdict() const {
   }
   out += ".";
   if (known > 0)
-    out += message(" ", known, known == 1 ? " pose" : " poses", " that it was fitted to ",
-                   known == 1 ? "is" : "are", " left out.");
+    out += message(" ", known, known == 1 ? " pose" : " poses", " that it was fitted to ", known == 1 ? "is" : "are",
+                   " left out.");
   if (options.fitted_poses) out += " The poses are those that it was fitted to, so that this confirms nothing.";
   return out;
 }

@@ -186,6 +186,7 @@ class Compiled {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 4; ++j) rows[i][j] = target(i, j);
     Correction<N> out{};
+    out.command.setZero();  // C writes the joints that move
     const int status = function<int(const double*, const double*, const double*, double*, double*)>("arm_correct")(
         rows[0], seed.data(), previous, out.command.data(), &out.predicted_error);
     out.status = status == 0 ? IkStatus::converged : status == 1 ? IkStatus::stalled : IkStatus::unreachable;

@@ -34,18 +34,22 @@ namespace {
 
 namespace vn = vernier;
 
+/// In which frames a controller shows poses.
+struct ControllerFrames {
+  vn::Isometry3 base;  ///< in the base frame of the chain
+  vn::Isometry3 tool;  ///< in the last frame of the chain
+};
+
 /// What the command line says.
 struct Settings {
   std::string model, targets, out;
   support::CsvOptions csv;
-  /// Where targets are poses of the controller: its base in the frame of the chain, and its tool in the chain's last
-  /// one.
-  std::optional<std::pair<vn::Isometry3, vn::Isometry3>> controller{};
-  bool poses = false;     ///< of a file with joints and poses, the poses are the targets
-  bool approach = true;   ///< commands are executed in their order
-  bool linear = false;    ///< all moves are linear
-  bool branches = false;  ///< all branches of each target instead of a path
-  bool radius = true;     ///< the radius of 95 % of each command
+  std::optional<ControllerFrames> controller{};  ///< where targets are poses that it shows
+  bool poses = false;                            ///< of a file with joints and poses, the poses are the targets
+  bool approach = true;                          ///< commands are executed in their order
+  bool linear = false;                           ///< all moves are linear
+  bool branches = false;                         ///< all branches of each target instead of a path
+  bool radius = true;                            ///< the radius of 95 % of each command
   std::optional<double> temperature{};
   support::PayloadOption payload{};
   double tolerance_mm = 0.05, max_step_deg = 30;
@@ -403,10 +407,6 @@ int run(support::Program& program) {
   for (const char* option : {"--tool", "--robot-base", "--flange"})
     if (in_place.program.empty() && !base_frame && program.given(option))
       throw support::UsageError(fmt::format("{} is of a --program, or of poses with --frame base", option));
-  for (const char* option :
-       {"--controller", "--workobject", "--noflip", "--assume-harmless", "--date", "--allow-uncorrected"})
-    if (in_place.program.empty() && program.given(option))
-      throw support::UsageError(fmt::format("{} is of a --program", option));
   if (!in_place.program.empty() && base_frame) throw support::UsageError("--frame is of --targets");
   if (!in_place.program.empty())
     return support::correct_program(
@@ -419,9 +419,10 @@ int run(support::Program& program) {
     };
     if (settings.branches) throw support::UsageError("--frame base: not with --all-branches");
     if (in_place.tools.size() > 1) throw support::UsageError("--frame base: one --tool alone");
-    settings.controller.emplace(frame_or_none(in_place.robot_base, "--robot-base"),
-                                frame_or_none(in_place.flange, "--flange") *
-                                    frame_or_none(in_place.tools.empty() ? "" : in_place.tools.front(), "--tool"));
+    settings.controller =
+        ControllerFrames{frame_or_none(in_place.robot_base, "--robot-base"),
+                         frame_or_none(in_place.flange, "--flange") *
+                             frame_or_none(in_place.tools.empty() ? "" : in_place.tools.front(), "--tool")};
   }
   const vn::SavedModel model = vn::read_model(settings.model);
   const support::CorrectionReport report =

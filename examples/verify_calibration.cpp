@@ -66,8 +66,8 @@ int verify_arm(const support::Program& program, Options& o, const vn::SavedModel
       vn::verify_calibration(robot.model(), *robot.estimate(), data, options, learned);
   working.finish();
 
-  const auto fresh = options.fitted_rows.others(data.joints(), data.positions());
-  const vn::Dataset<N> checked = report.known > 0 ? data.rows(fresh) : data;
+  const vn::Dataset<N> checked =
+      report.known > 0 ? data.rows(options.fitted_rows.others(data.joints(), data.positions())) : data;
   const std::string summary = report.summary(), verdict = summary.substr(0, summary.find('\n'));
   fmt::print("{}{}\n", support::styled(verdict, report.valid ? support::Look::good : support::Look::bad),
              summary.substr(verdict.size()));

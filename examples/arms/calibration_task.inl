@@ -142,8 +142,10 @@ CalibrationOutcome calibrate_of<N>(const CalibrationTask& task, const vn::FitOpt
 
   Stations stations = split_stations(task, types, fit.seed);
   vn::Measurements<N> train, test;
+  vn::RowFingerprints fitted_rows;  // before readings of a pose are joined
   for (std::size_t k = 0; k < stations.splits.size(); ++k) {
     const std::string place = std::to_string(stations.station[k]);
+    fitted_rows.add({stations.splits[k].train.joints(), stations.splits[k].train.positions()});
     train.add(vn::readings_joined(stations.splits[k].train, same), stations.names[k], place, stations.points[k]);
     test.add(std::move(stations.splits[k].test), stations.names[k], place, stations.points[k]);
   }
@@ -171,7 +173,8 @@ CalibrationOutcome calibrate_of<N>(const CalibrationTask& task, const vn::FitOpt
                                 .date = task.date,
                                 .held_out_error = out.report.stage(out.report.chosen).position.mean(),
                                 .data_sha256 = hashes,
-                                .controller = robot.controller};
+                                .controller = robot.controller,
+                                .fitted_rows = fitted_rows};
     return calibrated_arm_of(vn::calibrated_robot(calibration, info, set));
   };
   out.model = model_of(0);

@@ -96,6 +96,7 @@ void add_split(MeasuredFiles<N>& out, std::vector<vn::Split<N>>& stations, const
     out.held_out += fmt::format("; {} training row{} at held-out poses {} left out", apart, apart == 1 ? "" : "s",
                                 apart == 1 ? "is" : "are");
   for (std::size_t s = 0; s < stations.size(); ++s) {
+    out.fitted_rows.add({stations[s].train.joints(), stations[s].train.positions()});
     out.train.add(vn::readings_joined(stations[s].train, same), sets.names[s], sets.places[s], sets.points[s]);
     out.test.add(std::move(stations[s].test), sets.names[s], sets.places[s], sets.points[s]);
   }

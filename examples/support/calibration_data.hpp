@@ -30,6 +30,7 @@ struct MeasuredFiles {
   std::vector<vernier::Dataset<N>> files;   ///< poses as the files have them, one set a station and reflector
   vernier::Measurements<N> train;           ///< to learn from: poses, distances and contacts
   vernier::Measurements<N> test;            ///< held-out poses, stations as in `train`
+  vernier::RowFingerprints fitted_rows;     ///< of rows of poses to learn from, before readings of a pose are joined
   std::string held_out;                     ///< which poses those are, in words
   std::vector<vernier::ReportFile> inputs;  ///< all files that were read
   double camera_error = 0;                  ///< mean distance on the board at left-out images [m]; 0 without images

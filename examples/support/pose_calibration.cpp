@@ -106,7 +106,8 @@ PoseCalibration calibrate_measured(const vn::RobotDescription& description, cons
                             .date = o.date,
                             .held_out_error = out.report.stage(out.report.chosen).position.mean(),
                             .data_sha256 = file_hashes<N>(measured->files),
-                            .controller = robot.controller};
+                            .controller = robot.controller,
+                            .fitted_rows = measured->fitted_rows};
   };
   if (!o.save.empty())
     out.model = {o.save, save_station<N>(o.save, calibration, info_of(0), 0, measured->camera, measured->camera_error)};

@@ -143,16 +143,18 @@ vn::Isometry3 frame_of(const std::string& text, const char* option) {
 }
 
 void add_program_options(Program& program, ProgramCorrection& to) {
-  program.add_option(
+  const Option of_program = program.add_option(
       "--program", to.program,
       "robot program whose literal targets are corrected in place: RAPID (.mod, .prg), KRL (.src, .dat), URScript "
       "(.script), Fanuc (.ls)",
       "FILE");
-  program.add_option(
-      "--controller", to.controller,
-      "kinematics by which the controller reaches the poses of a program: nominal, a model, or calibration.conf of a "
-      "Universal Robots arm; by default nominal, and URScript poses stay as they are",
-      "nominal|FILE");
+  program
+      .add_option("--controller", to.controller,
+                  "kinematics by which the controller reaches the poses of a program: nominal, a model, or "
+                  "calibration.conf of a "
+                  "Universal Robots arm; by default nominal, and URScript poses stay as they are",
+                  "nominal|FILE")
+      .needs(of_program);
   program
       .add_option(
           "--tool", to.tools,
@@ -164,7 +166,8 @@ void add_program_options(Program& program, ProgramCorrection& to) {
       .add_option("--workobject", to.workobjects,
                   "frame in which a program's poses are, in the robot's base frame; written as that of --tool",
                   "[NAME=]X,Y,Z,RX,RY,RZ")
-      .one_value_each();
+      .one_value_each()
+      .needs(of_program);
   program.add_option("--robot-base", to.robot_base,
                      "the controller's base frame in that of the model's chain, where they differ (KUKA, Fanuc)",
                      "X,Y,Z,RX,RY,RZ");
@@ -174,17 +177,22 @@ void add_program_options(Program& program, ProgramCorrection& to) {
   program
       .add_option("--noflip", to.noflip, "Fanuc: sign of J5 at a position whose configuration has N",
                   "negative|positive")
-      .one_of({"negative", "positive"});
+      .one_of({"negative", "positive"})
+      .needs(of_program);
   program
       .add_option("--assume-harmless", to.assume_harmless,
                   "statement, or routine of another file, that changes no tool, work object or configuration; may be "
                   "given several times",
                   "NAME")
-      .one_value_each();
+      .one_value_each()
+      .needs(of_program);
   program.group(Group::output);
-  program.add_option("--date", to.date, "date written into the corrected program; by default today's", "DATE");
-  program.add_flag("--allow-uncorrected", to.allow_uncorrected,
-                   "write the program although some of its targets cannot be corrected and stay as they are");
+  program.add_option("--date", to.date, "date written into the corrected program; by default today's", "DATE")
+      .needs(of_program);
+  program
+      .add_flag("--allow-uncorrected", to.allow_uncorrected,
+                "write the program although some of its targets cannot be corrected and stay as they are")
+      .needs(of_program);
 }
 
 int correct_program(const ProgramCorrection& options, const CorrectionInput& input) {

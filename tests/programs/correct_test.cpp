@@ -151,7 +151,7 @@ TEST_F(Correct, PosesOfThePendantAreThoseOfItsTool) {
   };
   refused("--targets pendant.csv --frame base --out c.csv", 1, "--frame base is of poses; there are joints");
   refused("--targets pendant.csv --poses --out c.csv" + frames, 2, "--tool is of a --program, or of poses");
-  refused("--targets pendant.csv --noflip positive --out c.csv", 2, "--noflip is of a --program");
+  refused("--targets pendant.csv --noflip positive --out c.csv", 2, "--noflip requires --program");
   refused("--targets pendant.csv --poses --frame base --tool hand --out c.csv", 2, "--tool hand: not six numbers");
   refused("--targets pendant.csv --frame tool --out c.csv", 2, "--frame");
 }

@@ -235,6 +235,27 @@ TEST(VerifyCalibrationProgram, RowsOfTheCalibrationConfirmNothingInWhicheverFile
   }
 }
 
+// The fit joins readings of one pose; the file has them one by one.
+TEST(VerifyCalibrationProgram, ReadingsOfOnePoseAreRecognisedEach) {
+  const Reported& r = reported();
+  const auto once = seen(arm(), 100, 41);
+  PointRows positions(200, 3);
+  JointRows<6> joints(200, 6);
+  for (Index i = 0; i < 100; ++i)
+    for (Index reading = 0; reading < 2; ++reading) {
+      joints.row(2 * i + reading) = once.joints().row(i);
+      const Vector3 moved(1e-5 * static_cast<double>(reading), 0, 0);
+      set_point(positions, 2 * i + reading, Vector3(once.position(i) + moved));
+    }
+  write_dataset(r.folder / "twice.csv", Dataset<6>(joints, positions));
+  ASSERT_EQ(run(r.folder, "calibrate",
+                "--robot robot.json --data twice.csv --save twice.json --out figures --threads 1 --harmonics 0")
+                .exit_code,
+            0);
+  const CommandResult checked = run(r.folder, "verify_calibration", "--model twice.json --data twice.csv");
+  EXPECT_TRUE(has(checked.output, "160 poses that it was fitted to are left out.")) << checked.output << checked.errors;
+}
+
 TEST(VerifyCalibrationProgram, NamesTheJointWhoseZeroMoved) {
   const Reported& r = reported();
   write_dataset(r.folder / "moved.csv", seen(arm(0.3e-3 * JointVector<6>::Unit(2)), 25, 32));

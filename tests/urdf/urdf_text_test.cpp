@@ -68,6 +68,9 @@ TEST(UrdfText, RefusesAJointThatSlidesWithoutEnd) {
   robot.limits[0].first = -std::numeric_limits<double>::infinity();
   EXPECT_EQ(vernier_test::complaint([&] { static_cast<void>(urdf_text(robot)); }),
             "urdf_text: joint 1 slides and has no limits, which a URDF file needs");
+  robot.limits.pop_back();
+  EXPECT_EQ(vernier_test::complaint([&] { static_cast<void>(urdf_text(robot)); }),
+            "urdf_text: limits of 6 joints, expected 7");
 }
 
 }  // namespace

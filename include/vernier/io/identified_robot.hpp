@@ -32,6 +32,8 @@ struct RobotInfo {
   double held_out_error = 0;         ///< mean position error of held-out poses [m]; 0: unknown
   std::string data_sha256{};         ///< of the bytes of those files, joined by commas; empty: unknown
   ControllerMap controller{};        ///< how the chain's joints follow from those of the controller
+  /// Of the rows it was fitted to as files have them, where readings of a pose were joined; empty: those of the fit.
+  RowFingerprints fitted_rows{};
 };
 
 namespace detail {
@@ -79,7 +81,7 @@ CalibratedRobot<N, Convention> calibrated_robot(const Calibration<DhChain<N, Con
                   left_out.size() > 0 ? std::sqrt(left_out.squaredNorm() / static_cast<double>(left_out.size())) : 0,
                   info.held_out_error,
                   info.data_sha256};
-  from.fitted_rows = calibration.fitted_rows;
+  from.fitted_rows = info.fitted_rows.empty() ? calibration.fitted_rows : info.fitted_rows;
   auto robot = CalibratedRobot<N, Convention>(info.name, calibration.model(station), info.limits, std::move(from))
                    .with_controller(info.controller);
   const LearnedRemainder<N>* learned = calibration.deployed();

@@ -13,7 +13,7 @@
 namespace vernier {
 namespace detail {
 
-/// The first joint before a link, what is open of its element.
+/// Begins the element of a joint, up to its origin; the caller ends it.
 VERNIER_LOCAL void open_joint(tinyxml2::XMLPrinter& out, const std::string& name, const char* type,
                               const std::string& parent, const std::string& child, const Isometry3& origin) {
   const auto three = [](const Vector3& v) {
@@ -45,6 +45,8 @@ VERNIER_LOCAL void add_link(tinyxml2::XMLPrinter& out, const std::string& name) 
 VERNIER_IMPL std::string urdf_text(const RobotDescription& robot) {
   const ArmGeometry arm = robot.geometry();
   const std::vector<DhRow>& rows = arm.chain().rows();
+  demand(static_cast<int>(robot.limits.size()) == robot.controller_joints(), "urdf_text: limits of ",
+         robot.limits.size(), " joints, expected ", robot.controller_joints());
   VectorX lower(robot.limits.size()), upper(robot.limits.size());
   for (std::size_t j = 0; j < robot.limits.size(); ++j) {
     lower(static_cast<Index>(j)) = robot.limits[j].first;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -211,13 +212,15 @@ TEST(MeasurementConstraints, DistancesOfSegmentsEqualAFineSearch) {
   for (int i = 0; i < 50; ++i) {
     const Vector3 a = point(), b = point(), c = point(), d = i % 5 == 0 ? Vector3(c + 2 * (b - a)) : point();
     double smallest = 1e9;
-    constexpr int steps = 400;
-    for (int s = 0; s <= steps; ++s)
-      for (int t = 0; t <= steps; ++t)
-        smallest = std::min(smallest, (a + (b - a) * s / steps - c - (d - c) * t / steps).norm());
+    constexpr int steps = 1000;
+    for (int s = 0; s <= steps; ++s) {
+      const Vector3 from = a + (b - a) * s / steps;
+      const double t = std::clamp((from - c).dot(d - c) / (d - c).squaredNorm(), 0.0, 1.0);
+      smallest = std::min(smallest, (from - c - (d - c) * t).norm());
+    }
     const double found = segment_distance(a, b, c, d);
     EXPECT_LE(found, smallest + 1e-12);
-    EXPECT_GE(found, smallest - 0.02);
+    EXPECT_GE(found, smallest - (b - a).norm() / (2 * steps));
     EXPECT_NEAR(found, segment_distance(d, c, b, a), 1e-12);
   }
   EXPECT_DOUBLE_EQ(segment_distance({0, 0, 0}, {0, 0, 0}, {3, 4, 0}, {3, 4, 0}), 5);

@@ -62,11 +62,13 @@ std::string verdict_of(const vn::CalibrationReport& report) {
 }
 
 void print_measurements(const vn::RobotDescription& robot, const support::CalibrationOptions& o,
-                        const support::PoseCalibration& found) {
+                        const support::PoseCalibration& found, const support::CameraJoints* camera) {
   const vn::CalibrationReport& report = found.report;
   fmt::print("{}: {} joints{}\n", robot.name, robot.dof(),
              robot.modified ? "; modified convention, parameters are those of the equal standard chain" : "");
-  if (o.data.size() > 1)
+  if (camera != nullptr)
+    fmt::print("{}\n", camera->camera.counts());
+  else if (o.data.size() > 1)
     fmt::print("{} stations: one arm, {} base frames{}\n", o.data.size(), o.data.size(),
                o.calibrate.errors.tool_per_station ? " and as many tools" : "");
   else if (found.sets.size() > 1)
@@ -84,17 +86,17 @@ void print_reflectors(const std::vector<support::FoundReflector>& reflectors) {
                one.offset.y() * 1e3, one.offset.z() * 1e3, one.std.x() * 1e3, one.std.y() * 1e3, one.std.z() * 1e3);
 }
 
-void print_camera(const support::CameraJoints& found) {
-  fmt::print("{}\n", support::camera_text(found.camera));
-  if (found.moved.empty()) return;
-  std::string moved;
-  for (const double one : found.moved) moved += fmt::format("{}{:.2f}", moved.empty() ? "" : ", ", one);
-  fmt::print("Beside joint errors, steps of the intrinsics were {} standard deviations{}\n", moved,
-             found.converged ? "; they rest" : "; THEY DO NOT REST: take more images, or state --intrinsics");
-  fmt::print(
-      "Errors below are of single images, whose own poses err by {:.3f} mm (rms). On the board left-out images are off "
-      "by {:.3f} mm\n\n",
-      found.image_error * 1e3, found.camera.left_out_mean * 1e3);
+void print_camera(const support::CameraJoints& found, const support::CalibrationOptions& o) {
+  fmt::print("\n{}", support::camera_verdict(found.camera, "Images"));
+  if (!found.moved.empty()) {
+    std::string moved;
+    for (const double one : found.moved) moved += fmt::format("{}{:.2f}", moved.empty() ? "" : ", ", one);
+    fmt::print("- Beside joint errors, steps of the intrinsics were {} standard deviations{}\n", moved,
+               found.converged ? "; they rest." : "; THEY DO NOT REST: take more images, or state --intrinsics.");
+    fmt::print("- Errors above are of single images, whose own poses err by {:.3f} mm (rms).\n",
+               found.image_error * 1e3);
+  }
+  fmt::print("{}", support::camera_details(found.camera, o));
 }
 
 /// Prints, draws and writes what was found.
@@ -103,10 +105,10 @@ int report_calibration(support::Program& program, const vn::RobotDescription& ro
                        const support::CalibrationOptions& o, support::PoseCalibration& found,
                        const support::CameraJoints* camera) {
   const vn::CalibrationReport& report = found.report;
-  if (camera != nullptr) print_camera(*camera);
   fmt::print("{}\n", verdict_of(report));
-  print_measurements(robot, o, found);
+  print_measurements(robot, o, found, camera);
   print_reflectors(found.reflectors);
+  if (camera != nullptr) print_camera(*camera, o);
   if (o.parameters)
     fmt::print("\nFrames and links, as the stage geometry has them\n\n{}",
                support::parameter_table(report.identification));

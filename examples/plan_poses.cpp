@@ -267,11 +267,13 @@ int run(support::Program& program) {
       .add_setting("--cover", o.cover, "minimum number of poses in each 10 degrees of each joint that can be reached",
                    "N")
       .within(0, 1000);
-  program.add_setting("--candidates", o.candidates, "number of random poses to choose from", "N").within(3, 1000000);
+  program.add_setting("--candidates", o.candidates, "number of random poses to choose from; 50000 for a camera", "N")
+      .within(3, 1000000);
   program.add_flag("--bound", o.bound, "print an upper bound of the information that as many poses can have");
   program.parse("", "write the poses to this file", "FILE");
   o.sensor.note(program);
   o.out = program.common().out;
+  if (o.camera.given() && !program.given("--candidates")) o.candidates = 50000;  // few see a board
   if (o.camera.given() && o.choose > 0) throw support::UsageError("--camera-mount plans new poses, without --choose");
   if (o.count + o.add + o.choose == 0) throw support::UsageError("one of --count, --add and --choose is required");
   const vn::RobotDescription robot = support::choose_robot(o.robot);
@@ -315,8 +317,9 @@ int run(support::Program& program) {
     }
   if (gap && o.choose == 0 && o.cover == 0) fmt::print("--cover 1 plans a pose in each of these ranges\n");
   if (o.choose == 0)
-    fmt::print("{} visits: the first three register the tracker, the first pose is visited {} times to see drift\n",
-               plan.visits.size(), std::count(plan.visits.begin(), plan.visits.end(), plan.visits.front()));
+    fmt::print("{} visits: {}the first pose is visited {} times to see drift\n", plan.visits.size(),
+               o.camera.given() ? "" : "the first three register the tracker, ",
+               std::count(plan.visits.begin(), plan.visits.end(), plan.visits.front()));
   if (o.camera.given()) fmt::print("{}", support::describe_places(o.places, o.camera.mount));
   fmt::print("Poses: {}\n", support::shown(o.out));
   if (!program.common().json.empty()) {

@@ -43,6 +43,81 @@ inline bool same_payload(const vernier::MatrixX& payloads, vernier::Index row, v
   return true;
 }
 
+/// An arm with the errors of a seed.
+template <int N>
+class VirtualArm {
+ public:
+  /// @param loaded whether joints give way to payloads
+  VirtualArm(const vernier::DescribedRobot<N>& robot, const SimulationSettings& settings, std::uint64_t seed,
+             bool loaded = false)
+      : chain_(vernier::with_geometric_errors(robot.arm.model(), {}, vernier::child_seed(seed, 0))),
+        errors_(vernier::draw_joint_errors(chain_, sizes(robot, settings, loaded), vernier::child_seed(seed, 1))),
+        motors_(robot.controller),
+        backlash_(settings.backlash) {}
+
+  /// Poses of the tool at joint values of the chain that are visited in their order.
+  /// @param payloads n x 4, as `Dataset::payloads` has them; no rows: nothing
+  /// @param observer told of the poses
+  /// @throws std::runtime_error where the observer requests a stop
+  std::vector<vernier::Isometry3> poses(const vernier::JointRows<N>& joints, const vernier::Isometry3& base,
+                                        const vernier::Isometry3& tool, const vernier::MatrixX& payloads = {},
+                                        const vernier::Vector3& load_at = vernier::Vector3::Zero(),
+                                        const vernier::ObserverRef& observer = {}) const {
+    namespace vn = vernier;
+    const vn::JointRows<N> effective = lagging(joints);
+    std::vector<vn::Isometry3> out;
+    constexpr vn::Index block = 1024;
+    for (vn::Index i = 0, end = 0; i < joints.rows(); i = end) {  // rows under one payload, a few at a time
+      if (!observer({i, i, 0})) throw std::runtime_error("the simulation was stopped");
+      for (end = i + 1; end < joints.rows() && end < i + block && same_payload(payloads, i, end);) ++end;
+      const vn::Payload carried = payloads.rows() > 0 ? vn::Payload::of(payloads, i).at(load_at) : vn::Payload{};
+      const vn::Framed<vn::WithJointErrors<vn::DhChain<N>>> arm(
+          vn::WithJointErrors<vn::DhChain<N>>(chain_, errors_.carrying(carried)), base, tool);
+      const auto now = arm.poses(effective.middleRows(i, end - i));
+      out.insert(out.end(), now.begin(), now.end());
+    }
+    return out;
+  }
+
+ private:
+  static vernier::JointErrorSizes sizes(const vernier::DescribedRobot<N>& robot, const SimulationSettings& settings,
+                                        bool loaded) {
+    vernier::JointErrorSizes out{.harmonic = settings.gears, .harmonics = 30, .ripple = settings.gears / 20};
+    if (loaded) out.payload = settings.springs;
+    out.down = robot.down;
+    out.controller = robot.controller;
+    return out;
+  }
+  /// Where the joints stand: gears, or motors that err, lag behind.
+  vernier::JointRows<N> lagging(const vernier::JointRows<N>& joints) const {
+    namespace vn = vernier;
+    const auto types = chain_.joint_types();
+    const vn::JointRows<N> approach = vn::approach_directions<N>(vn::JointRows<N>(motors_.angles(joints)));
+    vn::JointRows<N> out = joints;
+    for (int j = 0; j < N; ++j) {
+      if (types[static_cast<std::size_t>(motors_.row_of(j))] != vn::JointType::revolute) continue;
+      for (int row = 0; row < N; ++row)
+        if (const double moved = motors_.none() ? (row == j ? 1 : 0) : motors_.moved(row, j); moved != 0)
+          for (vn::Index i = 0; i < joints.rows(); ++i) out(i, row) -= moved * approach(i, j) * backlash_;
+    }
+    return out;
+  }
+
+  vernier::DhChain<N> chain_;
+  vernier::JointErrors errors_;
+  vernier::MotorAngles motors_;
+  double backlash_;
+};
+
+/// A frame somewhere: within `position` [m] in each component, and turned by up to `rotation` [rad] about each axis.
+inline vernier::Isometry3 drawn_frame(double position, double rotation, vernier::Rng& rng) {
+  vernier::Isometry3 frame = vernier::Isometry3::Identity();
+  for (int k = 0; k < 3; ++k) frame.translation()(k) = rng.uniform(-position, position);
+  frame.linear() =
+      vernier::exp_so3(vernier::Vector3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)) * rotation);
+  return frame;
+}
+
 /// Measures the virtual arm of a seed.
 /// @param joints   of the chain, visited in their order
 /// @param points   reflectors on the flange, the first in its place for any number of them; several measure no
@@ -57,52 +132,20 @@ std::vector<vernier::Dataset<N>> simulated(const vernier::DescribedRobot<N>& rob
                                            const vernier::MatrixX& payloads = {},
                                            const vernier::ObserverRef& observer = {}) {
   namespace vn = vernier;
-  const auto types = robot.arm.model().joint_types();
-  const auto chain = vn::with_geometric_errors(robot.arm.model(), {}, vn::child_seed(seed, 0));
-  vn::JointErrorSizes sizes{.harmonic = settings.gears, .harmonics = 30, .ripple = settings.gears / 20};
-  if (payloads.rows() > 0) sizes.payload = settings.springs;
-  sizes.down = robot.down;
-  sizes.controller = robot.controller;
-  const auto errors = vn::draw_joint_errors(chain, sizes, vn::child_seed(seed, 1));
+  const VirtualArm<N> arm(robot, settings, seed, payloads.rows() > 0);
   // the sensor stands somewhere, the reflectors are somewhere on the flange
   vn::Rng rng(vn::child_seed(seed, 2));
-  const auto drawn = [&](double position, double rotation) {
-    vn::Isometry3 frame = vn::Isometry3::Identity();
-    for (int k = 0; k < 3; ++k) frame.translation()(k) = rng.uniform(-position, position);
-    frame.linear() = vn::exp_so3(vn::Vector3(rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, 1)) * rotation);
-    return frame;
-  };
-  const vn::Isometry3 base = drawn(3, 1.5) * robot.arm.base();
-  // gears, or motors that err, lag behind
-  const vn::MotorAngles motors(robot.controller);
-  const vn::JointRows<N> approach = vn::approach_directions<N>(vn::JointRows<N>(motors.angles(joints)));
-  vn::JointRows<N> effective = joints;
-  for (int j = 0; j < N; ++j) {
-    if (types[static_cast<std::size_t>(motors.row_of(j))] != vn::JointType::revolute) continue;
-    for (int row = 0; row < N; ++row)
-      if (const double moved = motors.none() ? (row == j ? 1 : 0) : motors.moved(row, j); moved != 0)
-        for (vn::Index i = 0; i < joints.rows(); ++i) effective(i, row) -= moved * approach(i, j) * settings.backlash;
-  }
+  const vn::Isometry3 base = drawn_frame(3, 1.5, rng) * robot.arm.base();
   const vn::MeasurementNoise noise{settings.position_noise, settings.orientation_noise,
                                    settings.orientations && points == 1};
   std::vector<vn::Dataset<N>> out;
   vn::Vector3 tool_point;  // where a payload is whose centre is not stated
   for (int point = 0; point < points; ++point) {
-    const vn::Isometry3 tool = robot.arm.tool() * drawn(0.1, 1);
+    const vn::Isometry3 tool = robot.arm.tool() * drawn_frame(0.1, 1, rng);
     if (point == 0) tool_point = tool.translation();
-    std::vector<vn::Isometry3> poses;
-    constexpr vn::Index block = 1024;
-    for (vn::Index i = 0, end = 0; i < joints.rows(); i = end) {  // rows under one payload, a few at a time
-      if (!observer({i, i, 0})) throw std::runtime_error("the simulation was stopped");
-      for (end = i + 1; end < joints.rows() && end < i + block && same_payload(payloads, i, end);) ++end;
-      const vn::Payload carried = payloads.rows() > 0 ? vn::Payload::of(payloads, i).at(tool_point) : vn::Payload{};
-      const vn::Framed<vn::WithJointErrors<vn::DhChain<N>>> arm(
-          vn::WithJointErrors<vn::DhChain<N>>(chain, errors.carrying(carried)), base, tool);
-      const auto now = arm.poses(effective.middleRows(i, end - i));
-      poses.insert(poses.end(), now.begin(), now.end());
-    }
-    const vn::detail::MeasuredPoses seen = vn::detail::measured_poses(
-        poses, noise, vn::child_seed(seed, digest(joints) + static_cast<std::uint64_t>(point)));
+    const vn::detail::MeasuredPoses seen =
+        vn::detail::measured_poses(arm.poses(joints, base, tool, payloads, tool_point, observer), noise,
+                                   vn::child_seed(seed, digest(joints) + static_cast<std::uint64_t>(point)));
     out.push_back(vn::Dataset<N>(joints, seen.positions, seen.orientations).carrying(payloads));
   }
   return out;

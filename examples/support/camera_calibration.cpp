@@ -17,6 +17,7 @@
 #include "figures.hpp"
 #include "file_name.hpp"
 #include "json_file.hpp"
+#include "progress.hpp"
 #include "robot_choice.hpp"
 #include "vernier/calibration/camera_calibration.hpp"
 #include "vernier/core/so3.hpp"
@@ -172,7 +173,9 @@ vn::CameraReport calibrate_arm(const CalibrationOptions& o, const vn::RobotDescr
                                const vn::CameraOptions& options, std::vector<SeenRange>& ranges) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   const vn::ImageRows rows = vn::read_image_joints(o.data.front(), N, description.joint_types(), format);
+  Working working("identifying arm and camera");
   const auto found = vn::calibrate_by_camera(robot.arm, board, views, rows, options);
+  working.finish();
   ranges = seen_ranges(robot, rows, found);
   if (!o.save.empty()) {
     vn::IdentificationReport no_covariance;
@@ -237,8 +240,17 @@ vernier::CameraSetup setup_of(const vernier::CameraReport& report) {
           report.in_flange};
 }
 
-std::string camera_text(const vernier::CameraReport& report) {
-  return report.summary() + image_table(report) + (report.parameters.empty() ? "" : parameter_table(report));
+std::string camera_verdict(const vernier::CameraReport& report, const char* title) {
+  std::string out = fmt::format("{}\n", title);
+  for (const std::string& line : report.verdict()) out += fmt::format("- {}\n", line);
+  return out;
+}
+
+std::string camera_details(const vernier::CameraReport& report, const CalibrationOptions& options) {
+  std::string out;
+  if (options.parameters)
+    out = "\n" + report.frames_and_intrinsics() + (report.parameters.empty() ? "" : parameter_table(report));
+  return options.verbose ? out + image_table(report) : out;
 }
 
 Json camera_json(const vernier::CameraReport& report) {
@@ -310,8 +322,11 @@ int calibrate_by_camera(Program& program, const CalibrationOptions& o) {
       return calibrate_arm<n()>(o, robot, in.board, in.views, in.format, in.options, ranges);
     });
   }
-  fmt::print("{}\n{}", name, camera_text(report));
+  fmt::print("{}\n{}: {}\n", camera_verdict(report, "Verdict"), name, report.counts());
   if (!ranges.empty()) fmt::print("{}", range_table(ranges));
+  fmt::print("{}\n", camera_details(report, o));
+  if (!o.verbose || !o.parameters)
+    fmt::print("Frames, intrinsics and links: --parameters; errors by image: --verbose\n");
   if (!program.common().json.empty()) {
     Json json = camera_json(report);
     if (!ranges.empty()) json["joints"] = to_json(ranges);
@@ -319,7 +334,7 @@ int calibrate_by_camera(Program& program, const CalibrationOptions& o) {
   }
   const std::filesystem::path folder = program.output_folder();
   draw_cameras(folder, report);
-  fmt::print("\nFigures: {}\n", folder.string());
+  fmt::print("Figures: {}\n", folder.string());
   if (!o.save.empty()) fmt::print("Calibrated model: {}\n", shown(o.save));
   return 0;
 }

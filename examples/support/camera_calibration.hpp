@@ -37,8 +37,10 @@ CameraInputs read_camera_inputs(const CalibrationOptions& options);
 /// What a saved model says of the images.
 vernier::CameraSetup setup_of(const vernier::CameraReport& report);
 
-/// The text of a screen: summary, images and parameters.
-std::string camera_text(const vernier::CameraReport& report);
+/// The lines of its verdict under a title.
+std::string camera_verdict(const vernier::CameraReport& report, const char* title);
+/// Frames, intrinsics and links for --parameters, and errors by image for --verbose.
+std::string camera_details(const vernier::CameraReport& report, const CalibrationOptions& options);
 
 /// Results as JSON.
 Json camera_json(const vernier::CameraReport& report);

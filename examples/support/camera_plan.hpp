@@ -13,48 +13,25 @@
 #include <string>
 #include <vector>
 
-#include "camera_calibration.hpp"
+#include "carried_camera.hpp"
 #include "cli.hpp"
 #include "json_file.hpp"
 #include "vernier/camera/board_view.hpp"
 #include "vernier/core/so3.hpp"
-#include "vernier/io/camera_files.hpp"
 
 namespace support {
 
 /// What a command line says of a camera.
-struct CameraPlan {
-  std::string mount{}, board{}, intrinsics{};  ///< empty: no camera
-  std::vector<double> carried{};               ///< of camera or board in the flange's frame: mm, rotation vector in deg
-  std::vector<double> distances{300, 1000};    ///< least and largest [mm]
-  double tilt_deg = 50;                        ///< largest
-  int places = 2;                              ///< number of them
+struct CameraPlan : CarriedCamera {
+  std::vector<double> distances{300, 1000};                    ///< least and largest [mm]
+  double tilt_deg = 50;                                        ///< largest
+  int places = 2;                                              ///< number of them
   double table_mm = std::numeric_limits<double>::quiet_NaN();  ///< height of a table
-
-  /// Whether there is a camera.
-  bool given() const { return !mount.empty(); }
 
   /// Adds its options to a command line.
   void add_to(Program& program) {
-    Option where =
-        program
-            .add_option("--camera-mount", mount,
-                        "plan images of a printed board: the flange carries the camera (flange) or the board (fixed)",
-                        "WHERE")
-            .one_of({"flange", "fixed"});
-    Option what = program.add_option("--board", board, "the printed board (JSON)", "FILE");
-    Option camera = program.add_option(
-        "--intrinsics", intrinsics,
-        "the camera, with the size of its images (JSON, or YAML of OpenCV or ROS); roughly right will do", "FILE");
-    Option held = program
-                      .add_option("--carried", carried,
-                                  "camera, or board, in the frame of the flange: position [mm] and rotation vector "
-                                  "[deg]; to some millimetres",
-                                  "X,Y,Z,RX,RY,RZ")
-                      .delimiter(',')
-                      .expected(6);
-    where.needs(what).needs(camera).needs(held);
-    for (Option one : {what, camera, held}) one.needs(where);
+    const Option where = CarriedCamera::add_to(
+        program, "plan images of a printed board: the flange carries the camera (flange) or the board (fixed)");
     program
         .add_option("--distances-mm", distances,
                     "range of distances from the camera to the middle of the board; 300,1000 without it", "MIN,MAX")
@@ -75,23 +52,13 @@ struct CameraPlan {
   /// What is seen well.
   /// @throws UsageError for a camera without the size of its images, and distances that are no range
   vernier::BoardView view() const {
-    vernier::BoardView out{.camera = read_camera(intrinsics),
-                           .board = vernier::read_board(board),
-                           .nearest = distances[0] * 1e-3,
-                           .farthest = distances[1] * 1e-3,
-                           .largest_tilt = tilt_deg * std::numbers::pi / 180};
-    if (out.camera.width <= 0 || out.camera.height <= 0)
-      throw UsageError(intrinsics + ": states no size of the images, which a plan needs");
-    if (!(out.nearest > 0 && out.nearest < out.farthest))
+    if (!(distances[0] > 0 && distances[0] < distances[1]))
       throw UsageError(fmt::format("--distances-mm: {} to {} is no range", distances[0], distances[1]));
-    return out;
-  }
-  /// Camera or board in the frame of the flange.
-  vernier::Isometry3 in_flange() const {
-    const double mm = 1e-3, degree = std::numbers::pi / 180;
-    return vernier::rigid_motion(
-        vernier::exp_so3(vernier::Vector3(vernier::Vector3(carried[3], carried[4], carried[5]) * degree)),
-        vernier::Vector3(vernier::Vector3(carried[0], carried[1], carried[2]) * mm));
+    return {.camera = camera(),
+            .board = printed(),
+            .nearest = distances[0] * 1e-3,
+            .farthest = distances[1] * 1e-3,
+            .largest_tilt = tilt_deg * std::numbers::pi / 180};
   }
 };
 

@@ -13,6 +13,7 @@
 #include "json_file.hpp"
 #include "parameter_table.hpp"
 #include "pose_calibration.hpp"
+#include "progress.hpp"
 #include "report_page.hpp"
 #include "saved_model.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
@@ -221,7 +222,9 @@ ContactCalibration identify_arm(const vn::RobotDescription& description, const C
   train = objects_of(train, training_rows(static_cast<vn::Index>(train.size()), o, seed, o.contacts, "objects"));
 
   const std::vector<vn::Contact> seen = effective(train);
+  Working working("identifying the arm");
   const auto found = vn::identify_by_contacts(robot.arm, seen, options, sensors, earlier ? &earlier->known : nullptr);
+  working.finish();
   require_usable(found, o.contacts);
   out.report = found;
   out.identified = vn::ArmGeometry(found.model.identified());

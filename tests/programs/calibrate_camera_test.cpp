@@ -150,6 +150,51 @@ TEST_F(CalibrateCamera, FindsBaseAndToolFromPosesOfTheFlange) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(tool.at(k).get<double>(), tool_(static_cast<Index>(k), 3) * 1e3, 0.3);
 }
 
+// A fixed camera at two places, planned and simulated; the flange carries the board.
+TEST_F(CalibrateCamera, TakesPlannedImagesOfAVirtualArm) {
+  const auto program = [&](const std::string& line) {
+    return vernier_test::run_command("cd '" + folder_.path().string() + "'; '" + VERNIER_EXAMPLES_DIR + "/" + line,
+                                     folder_.path());
+  };
+  const std::string camera =
+      " --robot abb_irb120 --board board.json --intrinsics camera.json --camera-mount fixed --carried 0,0,60,0,0,0";
+  const CommandResult planned =
+      program("plan_poses' --count 40 --candidates 20000 --json plan.json --out views.csv" + camera);
+  ASSERT_EQ(planned.exit_code, 0) << planned.errors;
+  EXPECT_EQ(planned.output.find("tracker"), std::string::npos) << planned.output;
+  const std::string simulate = "simulate_measurements' --places plan.json --seed 3" + camera;
+  const CommandResult taken =
+      program(simulate + " --poses views.csv --gears-urad 0 --noise-px 0.1 --corners c.csv --out j.csv");
+  ASSERT_EQ(taken.exit_code, 0) << taken.errors;
+  EXPECT_NE(read_file((folder_ / "c.csv").string()).find("image,camera,corner,u_px,v_px,width_px,height_px\n"),
+            std::string::npos);
+  const CommandResult found = calibrate(
+      "--robot abb_irb120 --data j.csv --corners c.csv --board board.json --camera-mount fixed --json r.json");
+  ASSERT_EQ(found.exit_code, 0) << found.errors;
+  EXPECT_TRUE(found.output.starts_with("Verdict\n- Distance on the board: ")) << found.output;
+  EXPECT_EQ(results().at("cameras").size(), 2u);
+  for (const nlohmann::json& one : results().at("cameras"))
+    EXPECT_NEAR(one.at("intrinsics").at("fx").get<double>(), setup_.camera.fx,
+                6 * one.at("std").at("fx").get<double>());
+
+  const auto refused = [&](const std::string& arguments, const std::string& reason) {
+    const CommandResult result = program(simulate + arguments);
+    EXPECT_NE(result.exit_code, 0) << arguments;
+    EXPECT_TRUE(result.one_line_of_errors()) << result.errors;
+    EXPECT_NE(result.errors.find(reason), std::string::npos) << result.errors;
+  };
+  refused(" --poses joints.csv --corners c.csv --out j.csv", "joints.csv: has no column board");
+  refused(" --poses views.csv --out j.csv", "--corners");
+  refused(" --poses views.csv --corners c.csv --out j.csv --points 3", "--points");
+  write_file(folder_ / "plan.json", R"({"places": [{"name": "shelf", "position_mm": [0, 0, 0],
+                                        "rotation_vector_rad": [0, 0, 0]}]})");
+  refused(" --poses views.csv --corners c.csv --out j.csv", "views.csv: the place 'place");
+  write_file(folder_ / "plan.json", R"({"places": [{"name": "shelf", "position_mm": [0, 0]}]})");
+  refused(" --poses views.csv --corners c.csv --out j.csv", "plan.json: places[0].position_mm: not three numbers");
+  write_file(folder_ / "plan.json", "{}");
+  refused(" --poses views.csv --corners c.csv --out j.csv", "plan.json: has no list of places");
+}
+
 TEST_F(CalibrateCamera, RefusesWhatDoesNotBelongTogether) {
   const auto refused = [&](const std::string& arguments, int code, const std::string& reason) {
     const CommandResult result = calibrate(arguments);

@@ -110,7 +110,13 @@ struct CameraReport {
   std::vector<Parameter> parameters{};  ///< of the chain, those that were estimated
   double scale_effect = 0;              ///< what one standard deviation of the board's scale is at the arm's reach [m]
 
-  /// A text of a screen.
+  /// Number of images and of corners, and where the camera is, in words.
+  VERNIER_API std::string counts() const;
+  /// The error first, then how sure it is, and what was not used: at most seven lines.
+  VERNIER_API std::vector<std::string> verdict() const;
+  /// Frames and intrinsics with their standard deviations, as lines.
+  VERNIER_API std::string frames_and_intrinsics() const;
+  /// A text of a screen: the verdict, frames and intrinsics.
   VERNIER_API std::string summary() const;
 };
 

@@ -46,6 +46,10 @@ struct CornerViews {
 /// @throws DataError naming file, line and column, also for a corner that is there twice
 VERNIER_API CornerViews read_corners(const std::string& path, const Board& board, const CsvFormat& format = {});
 
+/// The file that `read_corners` reads, to a ten-thousandth of a pixel. It has a column `camera` unless there is one
+/// alone that is called so, `board` likewise, and the size of the images where all state it.
+VERNIER_API std::string corners_text(const CornerViews& views);
+
 /// Rows of a file that names the image that was taken there.
 struct ImageRows {
   std::vector<std::string> images{};  ///< of each row
@@ -61,6 +65,9 @@ struct ImageRows {
 /// @throws DataError naming file, line and column, also for an image that is there twice
 VERNIER_API ImageRows read_image_joints(const std::string& path, int joints, std::span<const JointType> types = {},
                                         const CsvFormat& format = {});
+/// The file that `read_image_joints` reads.
+/// @param types of the joints; none: all are revolute
+VERNIER_API std::string image_joints_text(const ImageRows& rows, std::span<const JointType> types = {});
 /// Poses of the flange with a column `image`: x_mm, y_mm, z_mm, rx_rad, ry_rad, rz_rad.
 /// @throws DataError naming file, line and column, also for an image that is there twice
 VERNIER_API ImageRows read_flange_poses(const std::string& path, const CsvFormat& format = {});

@@ -123,6 +123,45 @@ VERNIER_IMPL CornerViews read_corners(const std::string& path, const Board& boar
   return out;
 }
 
+VERNIER_IMPL std::string corners_text(const CornerViews& views) {
+  const bool cameras = views.cameras != std::vector<std::string>{"camera"},
+             boards = views.boards != std::vector<std::string>{"board"};
+  const bool sized = std::all_of(views.views.begin(), views.views.end(),
+                                 [](const View& view) { return view.width > 0 && view.height > 0; });
+  std::string out = "image,";
+  if (cameras) out += "camera,";
+  if (boards) out += "board,";
+  out += sized ? "corner,u_px,v_px,width_px,height_px\n" : "corner,u_px,v_px\n";
+  const auto rounded = [](double pixel) { return std::round(pixel * 1e4) / 1e4; };
+  for (const View& view : views.views)
+    for (std::size_t k = 0; k < view.corners.size(); ++k) {
+      out += view.image + ',';
+      if (cameras) out += views.cameras[static_cast<std::size_t>(view.camera)] + ',';
+      if (boards) out += views.boards[static_cast<std::size_t>(view.board)] + ',';
+      out += message(view.corners[k], ',', rounded(view.pixels[k](0)), ',', rounded(view.pixels[k](1)));
+      out += sized ? message(',', view.width, ',', view.height, '\n') : "\n";
+    }
+  return out;
+}
+
+VERNIER_IMPL std::string image_joints_text(const ImageRows& rows, std::span<const JointType> types) {
+  demand(rows.joints.rows() == rows.size() && (types.empty() || static_cast<Index>(types.size()) == rows.joints.cols()),
+         "image_joints_text: ", rows.size(), " images, ", rows.joints.rows(), " rows of ", rows.joints.cols(),
+         " joints, ", types.size(), " types");
+  std::string out = "image";
+  for (Index j = 0; j < rows.joints.cols(); ++j) {
+    const bool angle = types.empty() || types[static_cast<std::size_t>(j)] == JointType::revolute;
+    out += message(",q", j + 1, angle ? "_rad" : "_m");
+  }
+  out += '\n';
+  for (Index i = 0; i < rows.size(); ++i) {
+    out += rows.images[static_cast<std::size_t>(i)];
+    for (Index j = 0; j < rows.joints.cols(); ++j) out += message(',', rows.joints(i, j));
+    out += '\n';
+  }
+  return out;
+}
+
 VERNIER_IMPL ImageRows read_image_joints(const std::string& path, int joints, std::span<const JointType> types,
                                          const CsvFormat& format) {
   CsvFormat quiet = format;  // the other reader tells of columns that nobody reads

@@ -22,9 +22,14 @@ namespace vernier {
 
 namespace detail {
 
-/// @param payloads where wanted, become those of the rows
+/// What stands beside the joints of planned poses.
+struct VisitColumns {
+  MatrixX payloads{};                 ///< n x 4, as `Dataset::payloads` has them; no rows where that is not stated
+  std::vector<std::string> boards{};  ///< name of the place of the board; none where that is not stated
+};
+/// @param visits where wanted, becomes what stands beside the joints
 VERNIER_API MatrixX read_joint_columns(const std::string& path, int joints, std::span<const JointType> types,
-                                       const CsvFormat& format, MatrixX* payloads = nullptr);
+                                       const CsvFormat& format, VisitColumns* visits = nullptr);
 /// The columns of a file of poses.
 struct PoseColumns {
   MatrixX values;        ///< joints, then the positions [m], then the orientations [rad] if the file has them
@@ -124,19 +129,18 @@ JointRows<N> read_joints(const std::string& path, std::span<const JointType> joi
 
 /// Configurations to visit, and what the arm carries there.
 template <int N>
-struct PlannedVisits {
+struct PlannedVisits : detail::VisitColumns {
   JointRows<N> joints{};  ///< n x N [rad, m]
-  MatrixX payloads{};     ///< n x 4, as `Dataset::payloads` has them; no rows where that is not stated
 };
 
 /// Joint rows from a CSV file as `read_joints` has them, with the columns payload_kg, payload_x_mm, payload_y_mm and
-/// payload_z_mm of `read_dataset`.
+/// payload_z_mm of `read_dataset`, and the column board of plans for a camera.
 /// @throws DataError naming file, line and column
 template <int N>
 PlannedVisits<N> read_visits(const std::string& path, std::span<const JointType> joint_types = {},
                              const CsvFormat& format = {}) {
   PlannedVisits<N> out;
-  out.joints = detail::read_joint_columns(path, N, joint_types, format, &out.payloads);
+  out.joints = detail::read_joint_columns(path, N, joint_types, format, &out);
   return out;
 }
 

@@ -116,11 +116,14 @@ VERNIER_LOCAL MatrixX payloads_of(const CsvTable& table) {
 }
 
 VERNIER_IMPL MatrixX read_joint_columns(const std::string& path, int joints, std::span<const JointType> types,
-                                        const CsvFormat& format, MatrixX* payloads) {
+                                        const CsvFormat& format, VisitColumns* visits) {
   const CsvTable table(path, format);
   MatrixX out =
       with_chain_joints(table.numbers(joint_columns(table, joints, types, format.controller)), format.controller);
-  if (payloads != nullptr) *payloads = payloads_of(table);
+  if (visits != nullptr) {
+    visits->payloads = payloads_of(table);
+    if (const auto board = table.find("board", quantities::words)) visits->boards = table.texts(*board);
+  }
   table.remark_unread();
   return out;
 }

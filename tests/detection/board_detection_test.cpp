@@ -10,6 +10,7 @@
 
 #include "complaint.hpp"
 #include "projection.hpp"
+#include "rendered_board.hpp"
 #include "vernier/camera/board_svg.hpp"
 
 namespace vn = vernier;
@@ -27,55 +28,6 @@ vn::Camera small_camera() {
   return out;
 }
 
-/// An image by rays from pixels, which shares no code with the projection: 4 x 4 samples a pixel, noise of 2 %.
-std::vector<unsigned char> rendered(const vn::Board& board, const vn::Camera& camera,
-                                    const vn::Isometry3& camera_T_board, double half_pixel, vn::Rng& rng) {
-  constexpr int per_square = 24;
-  const auto columns = static_cast<int>(board.columns) * per_square, rows = static_cast<int>(board.rows) * per_square;
-  std::vector<unsigned char> raster(static_cast<std::size_t>(columns * rows));
-  const double cell = board.square / per_square;
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < columns; ++c)
-      raster[static_cast<std::size_t>(r * columns + c)] = vn::is_black(board, (c + 0.5) * cell, (r + 0.5) * cell);
-  const vn::Matrix3 back = camera_T_board.linear().transpose();
-  const vn::Vector3 eye = -back * camera_T_board.translation();
-  // the point at depth one whose distorted place is (x, y), from a start
-  const auto undistort = [&](double x, double y, double& a, double& b, int iterations) {
-    for (int iteration = 0; iteration < iterations; ++iteration) {
-      const double s = a * a + b * b, radial = 1 + s * (camera.k1 + s * camera.k2);
-      const double dx = 2 * camera.p1 * a * b + camera.p2 * (s + 2 * a * a);
-      const double dy = camera.p1 * (s + 2 * b * b) + 2 * camera.p2 * a * b;
-      a = (x - dx) / radial;
-      b = (y - dy) / radial;
-    }
-  };
-  std::vector<unsigned char> out;
-  for (vn::Index v = 0; v < camera.height; ++v)
-    for (vn::Index u = 0; u < camera.width; ++u) {
-      const double x = (static_cast<double>(u) + half_pixel - camera.cx) / camera.fx;
-      const double y = (static_cast<double>(v) - camera.cy) / camera.fy;
-      double at_x = x, at_y = y;
-      undistort(x, y, at_x, at_y, 8);
-      int white = 0;
-      for (int sample = 0; sample < 16; ++sample) {
-        const double off_x = (sample % 4 - 1.5) / (4 * camera.fx), off_y = (sample / 4 - 1.5) / (4 * camera.fy);
-        double a = at_x + off_x, b = at_y + off_y;
-        undistort(x + off_x, y + off_y, a, b, 2);
-        double ray[3];
-        for (vn::Index k = 0; k < 3; ++k) ray[k] = back(k, 0) * a + back(k, 1) * b + back(k, 2);
-        const double depth = -eye(2) / ray[2];
-        const double c = (eye(0) + depth * ray[0]) / cell, r = (eye(1) + depth * ray[1]) / cell;
-        const bool on_board = depth > 0 && c >= 0 && r >= 0 && c < columns && r < rows;
-        const bool black =
-            on_board && raster[static_cast<std::size_t>(static_cast<int>(r) * columns + static_cast<int>(c))] != 0;
-        white += black ? 0 : 1;
-      }
-      const double value = 30 + 200 * white / 16.0 + 0.02 * 255 * rng.normal_pair()[0];
-      out.push_back(static_cast<unsigned char>(std::lround((std::clamp)(value, 0.0, 255.0))));
-    }
-  return out;
-}
-
 struct Deviation {
   double bias_u = 0, bias_v = 0, rms_u = 0, rms_v = 0;
   int corners = 0, missed = 0;
@@ -90,8 +42,9 @@ Deviation deviation(const vn::Board& board, int images, double half_pixel) {
     const vn::Matrix3 rotation = vn::exp_so3(turn);
     const vn::Isometry3 pose = vn::rigid_motion(
         rotation, vn::Vector3(rng.uniform(-0.01, 0.01), rng.uniform(-0.01, 0.01), 0.27) - rotation * board.middle());
-    const vn::View found = support::detect_board(board, rendered(board, small_camera(), pose, half_pixel, rng),
-                                                 small_camera().width, small_camera().height);
+    const vn::View found =
+        support::detect_board(board, vernier_test::rendered(board, small_camera(), pose, half_pixel, rng),
+                              small_camera().width, small_camera().height);
     out.missed += static_cast<int>(board.corners()) - static_cast<int>(found.corners.size());
     for (std::size_t i = 0; i < found.corners.size(); ++i) {
       const vn::Vector2 truth = vernier_test::seen_at(small_camera(), pose * board.corner(found.corners[i]));

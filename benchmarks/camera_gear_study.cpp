@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "simulated_views.hpp"
@@ -84,12 +83,11 @@ void study(std::uint64_t seed, int places) {
   setup.places = places;
   const auto simulated = planned(vernier_test::simulated_views(actual, robot.limits, setup, seed + 1), options.errors);
   const double began = vn::detail::steady_seconds();
-  std::optional<vn::Calibration<Chain>> by_camera;
   const auto found = vn::calibrate_joints_by_camera(
       robot, setup.board, simulated.views, simulated.rows, {.left_out = false}, [&](const vn::Measurements<6>& poses) {
-        by_camera = vn::calibrate(robot.chain, poses, options);
-        return vn::JointFit{by_camera->errors.arm.joint_errors(), by_camera->errors};
+        return vn::JointFit{vn::calibrate(robot.chain, poses, options).errors};
       });
+  const auto by_camera = vn::calibrate(robot.chain, found.poses, options);
   const double seconds = vn::detail::steady_seconds() - began;
 
   const vn::Framed<Actual> with_probe(actual, {}, vn::Isometry3(Eigen::Translation3d(0.02, 0.03, 0.12)));
@@ -103,13 +101,13 @@ void study(std::uint64_t seed, int places) {
   of_tracker.sensors.orientation_sigma = 0.05e-3;
   const auto by_tracker = vn::calibrate(robot.chain, tracked.without_approach(), of_tracker);
 
-  const vn::Dataset<6> fresh = vn::measure(with_probe, inside(by_camera->coverage, by_tracker.coverage, 1000, seed + 9),
+  const vn::Dataset<6> fresh = vn::measure(with_probe, inside(by_camera.coverage, by_tracker.coverage, 1000, seed + 9),
                                            {.position = 0, .with_orientations = false});
-  const double camera = registered_error(by_camera->model(), fresh),
+  const double camera = registered_error(by_camera.model(), fresh),
                tracker = registered_error(by_tracker.model(), fresh);
   std::printf("%3d   %7.3f   %8.4f   %7.4f   %7.4f   %5.2f   %6zu   %5.0f\n", static_cast<int>(seed),
               registered_error(as_designed(robot.chain), fresh),
-              registered_error(by_camera->errors.models(vn::Stage::geometry).front(), fresh), camera, tracker,
+              registered_error(by_camera.errors.models(vn::Stage::geometry).front(), fresh), camera, tracker,
               camera / tracker, found.moved.size(), seconds);
   std::fflush(stdout);
 }

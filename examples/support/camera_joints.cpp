@@ -67,13 +67,15 @@ CameraJoints calibrate_arm(const vn::RobotDescription& description, const Calibr
   vn::CalibrateOptions of_round = o.calibrate;
   if (prior) of_round.errors.prior = &*prior;
   of_round.remainder.on_geometry = of_round.remainder.on_error_model = false;
+  of_round.errors.find_lines = false;  // high orders say nothing of the camera, and the last fit has them
+  of_round.errors.harmonics = std::min(of_round.errors.harmonics, 60);
   of_round.keep_outliers = true;  // the loss weighs them down; the last fit names them
   of_round.fit = fit;
-  auto found = vn::calibrate_joints_by_camera(
-      robot.arm, in.board, in.views, rows, in.options, [&](const vn::Measurements<N>& poses) {
-        const auto calibration = vn::calibrate(robot.arm, poses, of_round);
-        return vn::JointFit{calibration.errors.arm.joint_errors(), calibration.errors};
-      });
+  auto found = vn::calibrate_joints_by_camera(robot.arm, in.board, in.views, rows, in.options,
+                                              [&](const vn::Measurements<N>& poses) {
+                                                const auto calibration = vn::calibrate(robot.arm, poses, of_round);
+                                                return vn::JointFit{calibration.errors, of_round.sensors, fit.executor};
+                                              });
   MeasuredFiles<N> measured = hold_out_poses<N>(found.poses, o, types, fit.seed);
   measured.camera = setup_of(found.camera);
   measured.camera_error = found.camera.left_out_mean;

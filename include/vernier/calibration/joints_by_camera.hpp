@@ -8,14 +8,18 @@
 #include <vector>
 
 #include "vernier/calibration/camera_calibration.hpp"
+#include "vernier/core/executor.hpp"
+#include "vernier/error_model/detail/refit.hpp"
 #include "vernier/error_model/error_model_estimate.hpp"
+#include "vernier/measurements/sensor_model.hpp"
 
 namespace vernier {
 
 /// What a fit found from the poses that images show.
 struct JointFit {
-  JointErrors errors;           ///< of the joints
-  ErrorModelEstimate estimate;  ///< of the same fit, one station a set of poses
+  ErrorModelEstimate estimate;  ///< of geometry and joint errors, one station a set of poses
+  SensorModel sensors{};        ///< with which it was fitted
+  ExecutorRef executor{};       ///< for fits to come
 };
 
 /// An arm with joint errors that was calibrated by a camera.
@@ -83,15 +87,18 @@ VERNIER_API ImageRows with_joint_errors(ImageRows rows, const JointErrors& error
 /// Calibrates an arm with joint errors by a camera. `calibrate_by_camera` comes first, without joint errors and
 /// then with those of a first fit, where left-out images decide. Rounds follow:
 ///
-/// 1. Joint errors, links and frames are fitted to the poses that images show.
+/// 1. Joint errors, links and frames are fitted to the poses that images show. From the second round on, no more is
+///    decided on which joint errors there are.
 /// 2. Intrinsics and the shape of the board take a Newton step of the least sum of squares over all of these unknowns.
 /// 3. With these intrinsics the images show other poses.
 ///
 /// They end where the step is small against its standard deviation: there the gradient of the whole problem is zero.
 /// Poses stand for their corners by their covariances, which are computed again in each round. Which joint errors there
-/// are, their priors, and the weights of wrong corners are those of the last fit.
+/// are, their priors, and the weights of wrong corners are those of the first round. A calibration from the poses that
+/// were found decides on them again.
 /// @param fit_joints a fit to poses: `JointFit(const Measurements<N>&)`. Tilts of joint frames are no errors of joint
-///                   values, so it must find none; called once a round
+///                   values, so it must find none; called twice, and in each round if it has an earlier calibration as
+///                   its prior
 /// @param most       rounds
 /// @throws CalibrationFailure and DataError as `calibrate_by_camera` does
 /// @cite Golub and Pereyra 1973
@@ -107,14 +114,15 @@ JointsByCamera<ChainOf<Arm>> calibrate_joints_by_camera(const Arm& arm, const Bo
     return calibrate_by_camera(arm, board, views, effective, now);
   };
   JointsByCamera<ChainOf<Arm>> out{with_errors(rough), {}, {}};
-  effective = detail::with_joint_errors(rows, fit_joints(measured_poses<N>(out.camera, rows)).errors);
+  const JointFit rough_fit = fit_joints(measured_poses<N>(out.camera, rows));
+  effective = detail::with_joint_errors(rows, rough_fit.estimate.arm.joint_errors());
   out.camera = with_errors(options);
   const CameraReport first = out.camera;
   CameraOptions again = detail::decided(options, first);
+  out.poses = measured_poses<N>(out.camera, rows);
+  JointFit fit = fit_joints(std::as_const(out.poses));
   for (int round = 0;; ++round) {
-    out.poses = measured_poses<N>(out.camera, rows);
-    const JointFit fit = fit_joints(std::as_const(out.poses));
-    out.errors = fit.errors;
+    out.errors = fit.estimate.arm.joint_errors();
     effective = detail::with_joint_errors(rows, out.errors);
     out.converged = out.camera.shared.gradient.size() == 0;  // nothing is shared
     if (out.converged) return out;
@@ -125,6 +133,11 @@ JointsByCamera<ChainOf<Arm>> calibrate_joints_by_camera(const Arm& arm, const Bo
     again.held = detail::moved_cameras(out.camera, step);
     out.camera = with_errors(again);
     detail::take_left_out(first, out.camera);
+    out.poses = measured_poses<N>(out.camera, rows);
+    if (detail::can_refit(fit.estimate))
+      detail::refit(fit.estimate, out.poses.sets(fit.sensors), fit.sensors, fit.executor);
+    else
+      fit = fit_joints(std::as_const(out.poses));
   }
 }
 

@@ -13,6 +13,7 @@
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/core/data_error.hpp"
 #include "vernier/kinematics/robots.hpp"
+#include "vernier/simulation/error_sources.hpp"
 
 namespace vn = vernier;
 using vernier_test::error_after_registration;
@@ -180,6 +181,42 @@ TEST(CalibrateByCamera, FindsABentBoard) {
   EXPECT_TRUE(found.blocks.back().kept);
   EXPECT_NEAR(found.board_bend(0), 0.5e-3, 0.06e-3);
   EXPECT_NEAR(found.board_bend(2), 0, 0.06e-3);
+}
+
+// Neither lens nor board errs; joints do, which no model of the arm has here.
+TEST(CalibrateByCamera, FindsNoEffectThatIsNotThere) {
+  const vn::Robot<6> robot = vn::robots::abb_irb120();
+  ViewSetup setup;
+  setup.board = {.rows = 7, .columns = 9, .square = 0.03, .scale_sigma = 1e-4};
+  setup.camera = {.fx = 1400, .fy = 1405, .cx = 810, .cy = 590, .width = 1600, .height = 1200};
+  setup.images = 40;
+  int kept = 0, tried = 0;
+  for (std::uint64_t arm = 0; arm < 8; ++arm) {
+    const vn::JointErrorSizes sizes{.harmonic = arm % 2 == 0 ? 0.2e-3 : 0, .harmonics = 10};
+    const vn::WithJointErrors<vn::DhChain<6>> actual(vn::with_geometric_errors(robot.chain, {}, arm),
+                                                     vn::draw_joint_errors(robot.chain, sizes, 50 + arm));
+    const SimulatedViews simulated = simulated_views(actual, robot.limits, setup, 100 + arm);
+    const auto found =
+        vn::calibrate_by_camera(robot, setup.board, simulated.views, simulated.rows, {.left_out = false});
+    for (const vn::CameraBlock& block : found.blocks) kept += block.kept ? 1 : 0;
+    tried += static_cast<int>(found.blocks.size());
+  }
+  EXPECT_GE(tried, 20);
+  EXPECT_LE(kept, 1);  // at 1 % each, more have a probability of 2 %
+}
+
+TEST(CalibrateByCamera, FindsTangentialDistortion) {
+  ViewSetup setup;  // whose camera has p1 = 4e-4, p2 = -6e-4
+  setup.board = {.rows = 7, .columns = 9, .square = 0.03, .scale_sigma = 1e-4};
+  setup.images = 30;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const SimulatedViews simulated = exact_arm(setup, seed);
+    const vn::CameraReport found =
+        vn::calibrate_hand_eye(setup.board, simulated.views, simulated.rows, {.left_out = false});
+    for (const vn::CameraBlock& block : found.blocks)
+      EXPECT_EQ(block.kept, block.name == "tangential distortion") << block.name;
+    EXPECT_NEAR(found.cameras[0].p1, setup.camera.p1, 4.5 * found.camera_std[0](6));
+  }
 }
 
 TEST(CalibrateByCamera, RefusesWhatImagesDoNotDetermine) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/camera/detail/camera_problem.hpp"
@@ -491,6 +492,61 @@ VERNIER_IMPL VectorX CameraRun::left_out_medians(const ViewNumbers& numbers, con
   return out;
 }
 
+/// Unknowns that one problem has and another has not: their values in units of their scales, and their numbers.
+VERNIER_LOCAL std::pair<VectorX, std::vector<Index>> added_unknowns(const CameraProblem& without,
+                                                                    const CameraProblem& with) {
+  std::vector<double> values;
+  std::vector<Index> numbers;
+  Index shared = (with.free.scale ? 1 : 0) + (with.free.bend ? 3 : 0);
+  const auto cameras = static_cast<Index>(with.state.cameras.size());
+  for (const bool free : with.free.intrinsics) shared += free ? cameras : 0;
+  const VectorX scales = with.scales();
+  Index at = with.unknowns() - shared;
+  const auto add = [&](bool added, double value) {
+    if (added) {
+      values.push_back(value / scales(at));
+      numbers.push_back(at);
+    }
+    ++at;
+  };
+  for (std::size_t c = 0; c < with.state.cameras.size(); ++c)
+    for (Index k = 0; k < Camera::num_parameters; ++k)
+      if (with.free.intrinsics[static_cast<std::size_t>(k)])
+        add(!without.free.intrinsics[static_cast<std::size_t>(k)],
+            with.state.cameras[c].parameters()(k) - without.state.cameras[c].parameters()(k));
+  if (with.free.scale) ++at;
+  for (Index k = 0; with.free.bend && k < 3; ++k) add(!without.free.bend, with.state.shape.bend(k));
+  return {Eigen::Map<const VectorX>(values.data(), static_cast<Index>(values.size())), numbers};
+}
+
+/// Whether unknowns that were added differ from where they were held: Hotelling's test at 1 %. What the arm lacks is
+/// common to the corners of an image, so images are what counts, unless pixels alone scatter more.
+VERNIER_LOCAL bool differ(const CameraProblem& without, const CameraProblem& with) {
+  const auto [values, numbers] = added_unknowns(without, with);
+  const auto k = static_cast<double>(values.size()), images = static_cast<double>(with.views().size());
+  if (!(images > k + 1)) return false;
+  const auto part = [&numbers = numbers](const MatrixX& of) {
+    const auto count = static_cast<Index>(numbers.size());
+    MatrixX out(of.size() > 0 ? count : 0, count);
+    for (Index r = 0; r < out.rows(); ++r)
+      for (Index c = 0; c < count; ++c)
+        out(r, c) = of(numbers[static_cast<std::size_t>(r)], numbers[static_cast<std::size_t>(c)]);
+    return out;
+  };
+  MatrixX factor = part(with.covariance());
+  if (const MatrixX by_images = part(with.jackknife()); by_images.size() > 0 && by_images.trace() > factor.trace())
+    factor = by_images;
+  if (factor.size() == 0 || !cholesky(factor)) return false;
+  VectorX whitened = values;
+  solve_lower(factor, whitened);
+  // tail of F with k and images - k degrees of freedom, by Paulson's approximation
+  const double dof = images - k, f = whitened.squaredNorm() * dof / (k * (images - 1)), a = 2 / (9 * k),
+               b = 2 / (9 * dof);
+  const double z = ((1 - b) * std::cbrt(f) - (1 - a)) / std::sqrt(b * std::cbrt(f * f) + a);
+  constexpr double level_1_percent = 2.326;  // quantile of the standard normal distribution
+  return z > level_1_percent;
+}
+
 VERNIER_IMPL CameraFreedom CameraRun::choose(const ViewNumbers& numbers, std::vector<CameraBlock>* out) const {
   CameraFreedom free = first_freedom();
   if (!options_.choose) return free;
@@ -501,7 +557,11 @@ VERNIER_IMPL CameraFreedom CameraRun::choose(const ViewNumbers& numbers, std::ve
     CameraProblem larger = now;
     settle(larger, with(free, block));
     const VectorX with_block = left_out_medians(numbers, larger);
-    CameraBlock tried{block.name, errors.mean(), with_block.mean(), predicts_worse(errors, with_block)};
+    CameraBlock tried{block.name, errors.mean(), with_block.mean()};
+    constexpr double relevant = 0.1;  // share of the error that an effect is which matters; they add in quadrature
+    const double explained = tried.without * tried.without - tried.with * tried.with;
+    tried.kept = differ(now, larger) && explained > relevant * relevant * tried.without * tried.without &&
+                 !predicts_worse(with_block, errors);
     if (tried.kept) {
       free = larger.free;
       now = std::move(larger);

@@ -36,8 +36,8 @@ struct CameraOptions {
   /// distortion of an order brings that of lower orders along.
   std::vector<std::string> free{};
   /// Whether left-out images decide on further unknowns: radial and tangential distortion, focal lengths, principal
-  /// point, radial distortion of sixth order, a bent board. They are estimated if a test at 1 % finds them, they explain
-  /// a tenth of the error, and left-out images are not predicted worse.
+  /// point, radial distortion of sixth order, a bent board. They are estimated if a test at 1 % finds them, they
+  /// explain a tenth of the error, and left-out images are not predicted worse.
   bool choose = true;
   /// Values that intrinsics and board keep, without `choose` and `left_out`. What is free is reported all the same: how
   /// well it is known, and what its errors do to poses.

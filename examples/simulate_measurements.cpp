@@ -62,6 +62,8 @@ Measured take_images(const Settings& o, const vn::DescribedRobot<N>& robot, cons
   const support::NamedPlaces places = support::read_places(o.places);
   if (visits.boards.empty())
     throw support::UsageError(o.poses + ": has no column board, which says which place each image shows");
+  if (visits.payloads.rows() > 0)
+    throw support::UsageError(o.poses + ": states payload_kg, which calibrations from images cannot use");
   vn::Rng rng(vn::child_seed(seed, 3));
   // hands put camera and boards where they shall be to some millimetres
   const auto roughly = [&](const vn::Isometry3& frame) {

@@ -203,5 +203,30 @@ TEST(JointsByCameras, AreFoundWithTheIntrinsics) {
   EXPECT_LT(error(calibration.model()), 0.5 * error(calibration.errors.models(vn::Stage::geometry).front()));
 }
 
+// Priors of links are about an arm that was identified with the same board: they say nothing of its scale.
+TEST(JointsByCameras, DoNotTellTheScaleOfTheBoard) {
+  const vn::Robot<6> robot = vn::robots::abb_irb120();
+  const vn::JointErrorSizes sizes{.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0.4e-3, .harmonics = 2};
+  const vn::WithJointErrors<vn::DhChain<6>> actual(vn::with_geometric_errors(robot.chain, {}, 31),
+                                                   vn::draw_joint_errors(robot.chain, sizes, 32));
+  ViewSetup setup;
+  setup.board = {.rows = 7, .columns = 9, .square = 0.03 * 1.003, .scale_sigma = 3e-3};
+  const auto simulated = vernier_test::simulated_views(actual, robot.limits, setup, 15);
+  vn::Board printed = setup.board;
+  printed.square = 0.03;
+  vn::CalibrateOptions options;
+  options.errors.tilt = options.errors.drift = options.errors.compliance = false;
+  options.errors.harmonics = 3;
+  options.remainder.on_error_model = false;
+  const auto found = vn::calibrate_joints_by_camera(
+      robot, printed, simulated.views, simulated.rows,
+      {.cameras = {setup.camera}, .free = {"fx", "fy"}, .choose = false, .left_out = false},
+      [&](const vn::Measurements<6>& poses) { return vn::JointFit{vn::calibrate(robot, poses, options).errors}; });
+  EXPECT_TRUE(found.converged);
+  EXPECT_GT(found.camera.board_scale_std, 1.5e-3);  // 0.5e-3 with the priors of an error model
+  EXPECT_LT(found.camera.board_scale_std, 3e-3);
+  EXPECT_LT(std::abs(found.camera.board_scale - 1.003), 2.5 * found.camera.board_scale_std);
+}
+
 }  // namespace
 }  // namespace image_poses_test

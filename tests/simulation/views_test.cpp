@@ -163,6 +163,11 @@ TEST(CornersText, IsReadBack) {
   CornerViews one;
   one.views = {unsized};
   EXPECT_EQ(corners_text(one), "image,corner,u_px,v_px\na.png,3,1.5,2\n");
+  for (const char* name : {"a,b.png", "", "a\"b", "a\n"}) {
+    one.views[0].image = name;
+    EXPECT_NE(vernier_test::complaint([&] { (void)corners_text(one); }).find("cannot stand in a CSV file"),
+              std::string::npos);
+  }
 }
 
 TEST(ImageJointsText, IsReadBack) {

@@ -59,6 +59,10 @@ namespace detail {
 /// Options of a round that keeps the decisions of the first.
 VERNIER_API CameraOptions decided(CameraOptions options, const CameraReport& first);
 
+/// Frees the links of an estimate to some centimetres. An error model holds them near the identified arm, whose lengths
+/// follow the scale of the board: that is no knowledge of this scale.
+VERNIER_API void free_links(ErrorModelEstimate& estimate);
+
 /// The Newton step of what all images share, of the least sum of squares over everything else: images by themselves,
 /// and their poses about an arm that moves along. The report takes its covariance, and standard deviations by it.
 /// @param estimate of the arm, fitted to the poses that images show
@@ -121,6 +125,12 @@ JointsByCamera<ChainOf<Arm>> calibrate_joints_by_camera(const Arm& arm, const Bo
   CameraOptions again = detail::decided(options, first);
   out.poses = measured_poses<N>(out.camera, rows);
   JointFit fit = fit_joints(std::as_const(out.poses));
+  const bool may_refit = detail::can_refit(fit.estimate);
+  const auto refit = [&] { detail::refit(fit.estimate, out.poses.sets(fit.sensors), fit.sensors, fit.executor); };
+  if (may_refit) {
+    detail::free_links(fit.estimate);
+    refit();
+  }
   for (int round = 0;; ++round) {
     out.errors = fit.estimate.arm.joint_errors();
     effective = detail::with_joint_errors(rows, out.errors);
@@ -134,8 +144,8 @@ JointsByCamera<ChainOf<Arm>> calibrate_joints_by_camera(const Arm& arm, const Bo
     out.camera = with_errors(again);
     detail::take_left_out(first, out.camera);
     out.poses = measured_poses<N>(out.camera, rows);
-    if (detail::can_refit(fit.estimate))
-      detail::refit(fit.estimate, out.poses.sets(fit.sensors), fit.sensors, fit.executor);
+    if (may_refit)
+      refit();
     else
       fit = fit_joints(std::as_const(out.poses));
   }

@@ -98,6 +98,17 @@ VERNIER_LOCAL void state_std(CameraReport& camera) {
   camera.board_scale_std = std;
 }
 
+VERNIER_IMPL void free_links(ErrorModelEstimate& estimate) {
+  constexpr double wide = 0.03;  // [m, rad]; far more than links of real arms err
+  VectorX precisions = estimate.arm.precisions();
+  const VectorX scales = estimate.arm.scales();
+  for (Index k = 0; k < static_cast<Index>(estimate.arm.geometric().size()); ++k) {
+    const double ratio = scales(k) / wide;
+    precisions(k) = (std::min)(precisions(k), estimate.residual_variance * ratio * ratio);
+  }
+  estimate.arm.set_precisions(precisions);
+}
+
 VERNIER_IMPL VectorX shared_step(const ErrorModelEstimate& estimate, const ImageRows& images, Loss loss,
                                  CameraReport& camera) {
   const ArmParameterisation& arm = estimate.arm;

@@ -67,6 +67,7 @@ VERNIER_API ImageRows read_image_joints(const std::string& path, int joints, std
                                         const CsvFormat& format = {});
 /// The file that `read_image_joints` reads.
 /// @param types of the joints; none: all are revolute
+/// @throws std::invalid_argument for a name that no cell can have
 VERNIER_API std::string image_joints_text(const ImageRows& rows, std::span<const JointType> types = {});
 /// Poses of the flange with a column `image`: x_mm, y_mm, z_mm, rx_rad, ry_rad, rz_rad.
 /// @throws DataError naming file, line and column, also for an image that is there twice

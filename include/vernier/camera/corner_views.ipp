@@ -123,6 +123,13 @@ VERNIER_IMPL CornerViews read_corners(const std::string& path, const Board& boar
   return out;
 }
 
+/// A name in a cell of a file whose cells have no quotes.
+VERNIER_LOCAL const std::string& cell_of(const std::string& name) {
+  demand(name.find_first_of(",;\t\r\n\"") == std::string::npos && !name.empty(), "the name '", detail::printable(name),
+         "' cannot stand in a CSV file: it is empty, or has a separator, a quotation mark or a line end");
+  return name;
+}
+
 VERNIER_IMPL std::string corners_text(const CornerViews& views) {
   const bool cameras = views.cameras != std::vector<std::string>{"camera"},
              boards = views.boards != std::vector<std::string>{"board"};
@@ -135,9 +142,9 @@ VERNIER_IMPL std::string corners_text(const CornerViews& views) {
   const auto rounded = [](double pixel) { return std::round(pixel * 1e4) / 1e4; };
   for (const View& view : views.views)
     for (std::size_t k = 0; k < view.corners.size(); ++k) {
-      out += view.image + ',';
-      if (cameras) out += views.cameras[static_cast<std::size_t>(view.camera)] + ',';
-      if (boards) out += views.boards[static_cast<std::size_t>(view.board)] + ',';
+      out += cell_of(view.image) + ',';
+      if (cameras) out += cell_of(views.cameras[static_cast<std::size_t>(view.camera)]) + ',';
+      if (boards) out += cell_of(views.boards[static_cast<std::size_t>(view.board)]) + ',';
       out += message(view.corners[k], ',', rounded(view.pixels[k](0)), ',', rounded(view.pixels[k](1)));
       out += sized ? message(',', view.width, ',', view.height, '\n') : "\n";
     }
@@ -155,7 +162,7 @@ VERNIER_IMPL std::string image_joints_text(const ImageRows& rows, std::span<cons
   }
   out += '\n';
   for (Index i = 0; i < rows.size(); ++i) {
-    out += rows.images[static_cast<std::size_t>(i)];
+    out += cell_of(rows.images[static_cast<std::size_t>(i)]);
     for (Index j = 0; j < rows.joints.cols(); ++j) out += message(',', rows.joints(i, j));
     out += '\n';
   }

@@ -17,8 +17,7 @@ Option CarriedCamera::add_to(Program& program, const std::string& help) {
   Option where = program.add_option("--camera-mount", mount, help, "WHERE").one_of({"flange", "fixed"});
   Option what = program.add_option("--board", board, "the printed board (JSON)", "FILE");
   Option seen_by = program.add_option(
-      "--intrinsics", intrinsics,
-      "the camera, with the size of its images (JSON, or YAML of OpenCV or ROS); roughly right will do", "FILE");
+      "--intrinsics", intrinsics, "the camera, with the size of its images (JSON, or YAML of OpenCV or ROS)", "FILE");
   Option held = program
                     .add_option("--carried", carried,
                                 "camera, or board, in the frame of the flange: position [mm] and rotation vector "

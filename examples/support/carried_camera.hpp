@@ -9,8 +9,8 @@
 
 #include "cli.hpp"
 #include "vernier/camera/board.hpp"
-#include "vernier/camera/board_view.hpp"
 #include "vernier/camera/camera.hpp"
+#include "vernier/core/types.hpp"
 
 namespace support {
 
@@ -29,6 +29,7 @@ struct CarriedCamera {
   /// @return     --camera-mount
   Option add_to(Program& program, const std::string& help);
   /// The board of the file.
+  /// @throws vernier::DataError on a malformed file; so does `camera`
   vernier::Board printed() const;
   /// The camera of the file.
   /// @throws UsageError for a camera without the size of its images
@@ -39,8 +40,8 @@ struct CarriedCamera {
 
 /// Where boards, or cameras, stand in the base frame of an arm, with their names.
 struct NamedPlaces {
-  std::vector<std::string> names{};
-  std::vector<vernier::Isometry3> in_base{};
+  std::vector<std::string> names{};           ///< as the column `board` of a plan has them
+  std::vector<vernier::Isometry3> in_base{};  ///< base_T_board, or base_T_camera
 };
 
 /// The key `places` of a JSON file, as `plan_poses --json` writes it.

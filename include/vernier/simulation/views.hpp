@@ -16,6 +16,7 @@ namespace vernier {
 /// The corners that a camera sees of a board, each with noise. Corners outside the image are missing, and all are if
 /// the print faces away.
 /// @param camera with the size of its images
+/// @param camera_T_board pose of the board in the camera's frame [m]; z of the board points into the print
 /// @param noise  standard deviation of a corner, per component [px]
 /// @throws std::invalid_argument for a camera without the size of its images
 VERNIER_API View seen_view(const Camera& camera, const Board& board, const Isometry3& camera_T_board, double noise,

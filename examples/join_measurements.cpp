@@ -70,7 +70,7 @@ auto of_joints(const Read& read) {
     return read();
   } catch (const vn::DataError& e) {
     std::string said = e.what();
-    for (const std::string option : {"--separator", "--decimal"})
+    for (const std::string option : {"--separator", "--decimal", "--columns"})
       if (const auto at = said.find(option); at != std::string::npos) said.insert(at + 2, "joints-");
     throw vn::DataError(said);
   }

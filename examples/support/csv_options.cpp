@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "vernier/core/check.hpp"
+#include "vernier/data/detail/csv_columns.hpp"
 #include "vernier/data/detail/pose_values.hpp"
 #include "vernier/io/json.hpp"
 
@@ -27,6 +28,10 @@ void CsvOptions::add_to(Program& program, const std::string& of, const std::stri
                          "comma without it",
                      "C");
   program.add_option(("--" + of + "decimal").c_str(), decimal, "decimal point of " + what + "; . without it", "C");
+  program
+      .add_option(("--" + of + "columns").c_str(), columns,
+                  "columns that " + what + " call otherwise, ours first: q1_deg=A1,q2_deg=A2,x_mm=X", "OURS=THEIRS,..")
+      ->delimiter(',');
 }
 
 void CsvOptions::add_euler_to(Program& program) {
@@ -51,6 +56,19 @@ vernier::CsvFormat CsvOptions::format() const {
   if (std::string_view("+-_.\"").find(out.separator) != std::string_view::npos ||
       std::isalnum(static_cast<unsigned char>(out.separator)) != 0)
     throw UsageError(fmt::format("--{}separator: '{}' cannot be one", of_, out.separator));
+  for (const std::string& one : columns) {
+    const std::size_t equals = one.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == one.size())
+      throw UsageError(fmt::format("--{}columns takes our name, = and the file's, as q1_deg=A1; not '{}'", of_,
+                                   vernier::detail::quotable(one)));
+    const std::string ours = one.substr(0, equals);
+    if (!vernier::detail::known_column(ours))
+      throw UsageError(fmt::format("--{}columns: no file has a column '{}'{}", of_, vernier::detail::quotable(ours),
+                                   vernier::detail::nearest_column(ours).empty()
+                                       ? std::string()
+                                       : "; is it " + vernier::detail::nearest_column(ours) + "?"));
+    out.columns.emplace_back(ours, one.substr(equals + 1));
+  }
   out.remark = [](const std::string& line) { fmt::print("{}\n", line); };
   out.controller = controller;
   return out;

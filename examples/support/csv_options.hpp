@@ -5,6 +5,7 @@
 /// The options that say how the CSV files of a command line are written.
 
 #include <string>
+#include <vector>
 
 #include "cli.hpp"
 #include "vernier/core/controller_map.hpp"
@@ -20,10 +21,11 @@ char one_character(const std::string& text, const std::string& option);
 /// How the CSV files of a command line are written.
 struct CsvOptions {
   std::string separator{}, decimal{};   ///< empty: a comma, and a point
+  std::vector<std::string> columns{};   ///< columns that files call otherwise, `ours=theirs`
   std::string euler{};                  ///< axes of Euler angles, see `CsvFormat`; empty: there are none
   vernier::ControllerMap controller{};  ///< whose joint values the files have; programs take it from the arm
 
-  /// Adds --separator and --decimal to a command line.
+  /// Adds --separator, --decimal and --columns to a command line.
   /// @param of   "" or what their names begin with, e.g. "joints-"
   /// @param what the files, for the help
   void add_to(Program& program, const std::string& of = "", const std::string& what = "CSV files that are read");

@@ -3,6 +3,7 @@
 
 #include <pybind11/stl.h>
 
+#include <map>
 #include <set>
 
 #include "arrays.hpp"
@@ -21,9 +22,11 @@ using support::MeasuredPoses;
 
 constexpr int pickle_schema = 1;
 
-vn::CsvFormat format_of(const std::string& separator, const std::string& decimal) {
+using Columns = std::map<std::string, std::string>;  // our names, and those of the file
+
+vn::CsvFormat format_of(const std::string& separator, const std::string& decimal, const Columns& columns) {
   vn::demand(separator.size() == 1 && decimal.size() == 1, "read: separator and decimal are one character each");
-  return {.separator = separator[0], .decimal = decimal[0]};
+  return {.separator = separator[0], .decimal = decimal[0], .columns = {columns.begin(), columns.end()}};
 }
 
 /// Rotation vectors, from arrays (n, 3) of them or (n, 3, 3) of matrices.
@@ -109,17 +112,20 @@ Measurements of_distances(const py::object& joints, const py::object& lengths, c
   return {{{}, {std::move(out)}, {}}};
 }
 
-Measurements read(const py::object& path, const Robot& robot, const std::string& separator,
-                  const std::string& decimal) {
-  return {{{support::read_measured_poses(path_of(path), robot.about, format_of(separator, decimal))}, {}, {}}};
+Measurements read(const py::object& path, const Robot& robot, const std::string& separator, const std::string& decimal,
+                  const Columns& columns) {
+  const vn::CsvFormat format = format_of(separator, decimal, columns);
+  return {{{support::read_measured_poses(path_of(path), robot.about, format)}, {}, {}}};
 }
 Measurements read_distances(const py::object& path, const Robot& robot, const std::string& separator,
-                            const std::string& decimal) {
-  return {{{}, {support::read_measured_distances(path_of(path), robot.about, format_of(separator, decimal))}, {}}};
+                            const std::string& decimal, const Columns& columns) {
+  const vn::CsvFormat format = format_of(separator, decimal, columns);
+  return {{{}, {support::read_measured_distances(path_of(path), robot.about, format)}, {}}};
 }
 Measurements read_contacts(const py::object& path, const Robot& robot, const std::string& separator,
-                           const std::string& decimal) {
-  return {{{}, {}, support::read_measured_contacts(path_of(path), robot.about, format_of(separator, decimal))}};
+                           const std::string& decimal, const Columns& columns) {
+  const vn::CsvFormat format = format_of(separator, decimal, columns);
+  return {{{}, {}, support::read_measured_contacts(path_of(path), robot.about, format)}};
 }
 
 Measurements joined(const Measurements& a, const Measurements& b) {
@@ -273,12 +279,15 @@ void bind_measurements(py::module_& module) {
       .def_static("from_distances", &of_distances, py::arg("joints"), py::arg("lengths"), py::kw_only(),
                   py::arg("name") = "", "Distances of the tool point from one fixed point [m].")
       .def_static("read", &read, py::arg("path"), py::arg("robot"), py::kw_only(), py::arg("separator") = ",",
-                  py::arg("decimal") = ".",
-                  "Poses of a CSV file: columns q1_rad .., x_mm, y_mm, z_mm, rx_rad .., point ..")
+                  py::arg("decimal") = ".", py::arg("columns") = Columns(),
+                  "Poses of a CSV file: columns q1_rad .., x_mm, y_mm, z_mm, rx_rad .., point .. Columns that the file "
+                  "calls otherwise are stated by columns={'q1_deg': 'A1', ..}.")
       .def_static("read_distances", &read_distances, py::arg("path"), py::arg("robot"), py::kw_only(),
-                  py::arg("separator") = ",", py::arg("decimal") = ".", "Distances of a CSV file.")
+                  py::arg("separator") = ",", py::arg("decimal") = ".", py::arg("columns") = Columns(),
+                  "Distances of a CSV file.")
       .def_static("read_contacts", &read_contacts, py::arg("path"), py::arg("robot"), py::kw_only(),
-                  py::arg("separator") = ",", py::arg("decimal") = ".", "Touches of a CSV file.")
+                  py::arg("separator") = ",", py::arg("decimal") = ".", py::arg("columns") = Columns(),
+                  "Touches of a CSV file.")
       .def_property_readonly(
           "joints", [](const Measurements& m) { return array_of(only_poses(m).joints); },
           "Joint values of the poses of one station (n, joints) [rad, m].")

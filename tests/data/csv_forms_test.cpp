@@ -374,6 +374,25 @@ TEST_F(CsvForms, WritesTheTypesOfJoints) {
             "write_dataset: 2 types of joints for 3 joints");
 }
 
+TEST_F(CsvForms, ColumnsWithOtherNames) {
+  const CsvFormat format{.columns = {{"q1_rad", "A1"}, {"q2_rad", "Joint 2"}, {"x_mm", "y_mm"}, {"y_mm", "x_mm"}}};
+  expect_read("A1,Joint 2,y_mm,x_mm,z_mm\n" + row, format);
+  EXPECT_TRUE(remarks_.empty());
+  // a file that calls one of them as we do, or lacks it, is told
+  expect_read("q1_rad,Joint 2,y_mm,x_mm,z_mm\n" + row, format);
+  EXPECT_EQ(remarks_, std::vector<std::string>{"f.csv: no column 'A1' for q1_rad"});
+  EXPECT_EQ(refused("A1,q1_rad,q2_rad,x_mm,y_mm,z_mm\n1," + row, {.columns = {{"q1_rad", "A1"}}}),
+            "f.csv, line 1: column q1_rad is there twice");
+  EXPECT_EQ(refused("A1,q1_deg,q2_rad,x_mm,y_mm,z_mm\n1," + row, {.columns = {{"q1_rad", "A1"}}}),
+            "f.csv, line 1: columns q1_rad and q1_deg both give q1");
+  EXPECT_EQ(refused(head + "\n" + row, {.columns = {{"joint_1", "A1"}}}),
+            "CsvFormat: 'A1' cannot stand for joint_1, which is no column of any file");
+  EXPECT_EQ(vernier_test::complaint([&] {
+              (void)read_dataset<2>("f.csv", {}, {.columns = {{"q1_rad", "A1"}}});
+            }),
+            "f.csv, line 1: no column 'A1' for q1_rad");
+}
+
 TEST_F(CsvForms, TextForOtherColumnsHasDecimalPoints) {
   write_file("f.csv", "target;q1_rad;note\n\"P1,5\";0,5;1,5\n");
   const CsvText text = read_csv_text("f.csv", {.separator = ';', .decimal = ','});

@@ -88,11 +88,29 @@ TEST_F(CsvOptionsOfPrograms, ThatCannotBeAreRefused) {
            {"--decimal x", "--decimal is . or ,"},
            {"--separator ';;'", "--separator takes one character, or tab or space"},
            {"--separator a", "--separator: 'a' cannot be one"},
-           {"--separator .", "--separator and --decimal are both '.'"}}) {
+           {"--separator .", "--separator and --decimal are both '.'"},
+           {"--columns q1_deg", "--columns takes our name, = and the file's, as q1_deg=A1; not 'q1_deg'"},
+           {"--columns Q1_DEG=A1", "--columns: no file has a column 'Q1_DEG'; is it q1_deg?"}}) {
     const auto result = run("simulate_measurements' --robot ur5 --poses q.csv --out a.csv " + options);
     EXPECT_EQ(result.exit_code, 2) << options;
     EXPECT_NE(result.errors.find(said), std::string::npos) << result.errors;
   }
+}
+
+TEST_F(CsvOptionsOfPrograms, NameColumns) {
+  write_file(folder_ / "q.csv", "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n10,-70,60,0,45,5\n");
+  write_file(folder_ / "a.csv", "A1,A2,A3,A4,Pitch,q6_deg\n10,-70,60,0,45,5\n");
+  done("simulate_measurements' --robot ur5 --poses q.csv --out ours.csv");
+  const auto refused = run("simulate_measurements' --robot ur5 --poses a.csv --out theirs.csv");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.errors.find("a.csv, line 1: no column q1_rad or q1_deg in the header (A1, A2, A3, A4, Pitch, "
+                                "q6_deg); if that is 'A1', state --columns q1_rad=A1 or q1_deg=A1"),
+            std::string::npos)
+      << refused.errors;
+  done(
+      "simulate_measurements' --robot ur5 --poses a.csv --out theirs.csv "
+      "--columns q1_deg=A1,q2_deg=A2,q3_deg=A3 --columns q4_deg=A4,q5_deg=Pitch");
+  EXPECT_EQ(read_file(folder_ / "ours.csv"), read_file(folder_ / "theirs.csv"));
 }
 
 // The table of points has these options already; those of the joints have names of their own.

@@ -151,6 +151,12 @@ def test_measurements(source, robot, measured, tmp_path):
     again = vernier.Measurements.read(tmp_path / "again.csv", robot)
     assert np.array_equal(again.joints, measured.joints)
     np.testing.assert_allclose(again.positions, measured.positions, atol=1e-12)
+    text = (tmp_path / "again.csv").read_text().replace("q1_rad", "A1").replace("x_mm", "X")
+    (tmp_path / "other.csv").write_text(text)
+    with pytest.raises(vernier.DataError, match="no column q1_rad or q1_deg"):
+        vernier.Measurements.read(tmp_path / "other.csv", robot)
+    other = vernier.Measurements.read(tmp_path / "other.csv", robot, columns={"q1_rad": "A1", "x_mm": "X"})
+    assert np.array_equal(other.joints, again.joints) and np.array_equal(other.positions, again.positions)
     flags = np.arange(300) % 5 == 0
     assert np.array_equal(measured.rows(flags).joints, measured.joints[flags])
     assert np.array_equal(measured.rows([7, 3]).joints, measured.joints[[7, 3]])

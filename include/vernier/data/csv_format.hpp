@@ -6,6 +6,8 @@
 
 #include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "vernier/core/controller_map.hpp"
 
@@ -26,6 +28,9 @@ struct CsvFormat {
   std::string euler{};
   /// Joint values of the file are those of this controller. Readers return those of the chain.
   ControllerMap controller{};
+  /// Columns that the file calls otherwise: our name (`q1_deg`), then the file's (`A1`). A file without the second is
+  /// remarked upon; if nobody listens, it is refused.
+  std::vector<std::pair<std::string, std::string>> columns{};
 };
 
 }  // namespace vernier

@@ -74,6 +74,7 @@ class CsvTable {
 
  private:
   VERNIER_API void require_separated(std::string_view header) const;
+  VERNIER_API void rename_columns();
   VERNIER_API std::string place(std::size_t line, std::string_view column) const;
   VERNIER_API double value(std::string_view cell, std::size_t line, const CsvColumn& column) const;
   VERNIER_API std::vector<std::string_view> cells(const TextLine& line) const;

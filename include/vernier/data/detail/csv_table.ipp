@@ -18,6 +18,9 @@ VERNIER_LOCAL void require_format(const CsvFormat& format) {
          " cannot be a decimal point");
   demand(format.separator != format.decimal, "CsvFormat: '", format.decimal,
          "' is both the separator and the decimal point");
+  for (const auto& [ours, theirs] : format.columns)
+    demand(known_column(ours), "CsvFormat: '", printable(theirs), "' cannot stand for ", printable(ours),
+           ", which is no column of any file");
 }
 
 /// A separator as the programs' options take it.
@@ -43,12 +46,27 @@ VERNIER_IMPL CsvTable::CsvTable(const std::string& path, const CsvFormat& format
   header_ = cells(lines_[first]);
   lines_.erase(lines_.begin(), lines_.begin() + static_cast<std::ptrdiff_t>(first) + 1);
   if (header_.size() == 1) require_separated(names);
+  rename_columns();
   read_.assign(header_.size(), false);
   std::vector<std::string_view> sorted = header_;
   std::sort(sorted.begin(), sorted.end());
   for (auto at = std::adjacent_find(sorted.begin(), sorted.end()); at != sorted.end();
        at = std::adjacent_find(at + 1, sorted.end()))
     if (known_column(*at)) fail_in_header("column ", *at, " is there twice");
+}
+
+/// Calls columns as we do.
+VERNIER_IMPL void CsvTable::rename_columns() {
+  const std::vector<std::string_view> named = header_;  // so that two columns can change their names
+  for (const auto& [ours, theirs] : format_.columns) {
+    const auto found = std::find(named.begin(), named.end(), theirs);
+    if (found != named.end())
+      header_[static_cast<std::size_t>(found - named.begin())] = ours;
+    else if (format_.remark)
+      remark(message(": no column '", printable(theirs), "' for ", ours));
+    else
+      fail_in_header("no column '", printable(theirs), "' for ", ours);
+  }
 }
 
 /// A header of a single column, which another separator would take apart.
@@ -128,8 +146,8 @@ VERNIER_IMPL CsvColumn CsvTable::require_column(std::string_view stem, const Qua
   const auto name = [&](std::size_t unit) { return message(stem, quantity.units[unit].first); };
   for (const std::string_view other : header_)
     if (hint.empty() && names_joint(other, stem))
-      hint = message("; call '", printable(other), "' ", name(0),
-                     quantity.units.size() > 1 ? " or " + name(1) : std::string());
+      hint = message("; if that is '", printable(other), "', state --columns ", name(0), "=", printable(other), " or ",
+                     name(1), "=", printable(other), " (CsvFormat)");
   throw DataError(message(file_, ", line ", header_line_, ": no column ", name(0),
                           quantity.units.size() > 1 ? " or " + name(1) : std::string(), " in the header (", present,
                           ")", hint));

@@ -44,6 +44,7 @@ struct ControllerFrames {
 struct Settings {
   std::string model, targets, out;
   support::CsvOptions csv;
+  support::JointUnits units;
   std::optional<ControllerFrames> controller{};  ///< where targets are poses that it shows
   bool poses = false;                            ///< of a file with joints and poses, the poses are the targets
   bool approach = true;                          ///< commands are executed in their order
@@ -397,6 +398,8 @@ int run(support::Program& program) {
                      "measurements",
                      "T");
   settings.payload.add_to(program);
+  program.group(support::Group::output);
+  settings.units.add_to(program);
   program.parse("", "write the commands to this file", "FILE");
   settings.out = program.common().out;
   settings.approach = !no_approach;
@@ -427,7 +430,7 @@ int run(support::Program& program) {
   const vn::SavedModel model = vn::read_model(settings.model);
   const support::CorrectionReport report =
       support::dispatch_dof(model.dof(), [&](auto n) { return correct_arm<n()>(settings, model); });
-  vn::write_file(settings.out, support::correction_csv(report));
+  vn::write_file(settings.out, support::correction_csv(report, settings.units));
 
   const support::CorrectionTotals totals = support::totals(report);
   support::print_correction(report, totals);

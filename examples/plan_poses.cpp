@@ -13,6 +13,7 @@
 #include "cli.hpp"
 #include "csv_options.hpp"
 #include "dispatch.hpp"
+#include "joint_units.hpp"
 #include "json_file.hpp"
 #include "model_instances.hpp"
 #include "plan_figures.hpp"
@@ -32,6 +33,7 @@ namespace vn = vernier;
 struct Settings {
   support::RobotOptions robot;
   support::CsvOptions csv;
+  support::JointUnits units;
   support::SensorOptions sensor;
   support::CameraPlan camera;
   vn::BoardPlaces places;  // that were proposed
@@ -137,13 +139,13 @@ support::PlanOutcome plan_new(Settings& o, const vn::DescribedRobot<N>& robot, v
   std::string text;
   const std::vector<vn::JointType> shown = robot.controller.types(types);
   const vn::MatrixX joints = robot.controller.to_controller(plan.joints);
-  for (std::size_t j = 0; j < shown.size(); ++j)
-    text += vn::message("q", j + 1, shown[j] == vn::JointType::revolute ? "_rad," : "_m,");
+  text += o.units.header(shown);
   text += o.camera.given() ? "board,visit\n" : "visit\n";
   std::vector<bool> seen(plan.chosen.size(), false);
   for (std::size_t i = 0; i < plan.visits.size(); ++i) {
     const auto row = static_cast<std::size_t>(plan.visits[i]);
-    for (vn::Index j = 0; j < joints.cols(); ++j) text += vn::message(joints(plan.visits[i], j), ',');
+    const vn::VectorX values = joints.row(plan.visits[i]).transpose();
+    text += o.units.cells({values.data(), shown.size()}, shown);
     if (o.camera.given())
       text +=
           support::place_name(static_cast<std::size_t>(o.places.place[static_cast<std::size_t>(plan.chosen[row])])) +
@@ -270,6 +272,8 @@ int run(support::Program& program) {
   program.add_setting("--candidates", o.candidates, "number of random poses to choose from; 50000 for a camera", "N")
       .within(3, 1000000);
   program.add_flag("--bound", o.bound, "print an upper bound of the information that as many poses can have");
+  program.group(support::Group::output);
+  o.units.add_to(program).excludes(choose);
   program.parse("", "write the poses to this file", "FILE");
   o.sensor.note(program);
   o.out = program.common().out;

@@ -118,10 +118,8 @@ std::string pose_columns(const vn::Isometry3& pose) {
 
 }  // namespace
 
-std::string correction_csv(const CorrectionReport& report) {
-  std::string text;
-  for (std::size_t j = 0; j < report.joints.size(); ++j)
-    text += vn::message("q", j + 1, report.joints[j] == vn::JointType::revolute ? "_rad," : "_m,");
+std::string correction_csv(const CorrectionReport& report, const JointUnits& units) {
+  std::string text = units.header(report.joints);
   text +=
       "status,predicted_error_mm,gate,target,point,predicted_rotation_mrad,deviation_mm,radius95_mm,"
       "singularity,singularity_deg";
@@ -129,7 +127,7 @@ std::string correction_csv(const CorrectionReport& report) {
                                  [](const CommandRow& row) { return row.commanded.has_value(); });
   text += poses ? ",x_mm,y_mm,z_mm,rx_rad,ry_rad,rz_rad\n" : "\n";
   for (const CommandRow& row : report.rows) {
-    for (const double q : row.command) text += vn::message(q, ',');
+    text += units.cells(row.command, report.joints);
     text += vn::message(row.status, ',', row.error * 1e3, ',', row.gate, ',', row.target, ',', row.kind, ',',
                         row.rotation * 1e3, ',', row.deviation * 1e3, ',', row.radius * 1e3, ',',
                         row.singularities.nearest(), ',');

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "joint_units.hpp"
 #include "vernier/core/types.hpp"
 #include "vernier/kinematics/dh.hpp"
 #include "vernier/kinematics/singularities.hpp"
@@ -62,7 +63,7 @@ struct CorrectionTotals {
 CorrectionTotals totals(const CorrectionReport& report);
 
 /// Columns q1_rad .. (q1_m for a prismatic joint), then what became of each command.
-std::string correction_csv(const CorrectionReport& report);
+std::string correction_csv(const CorrectionReport& report, const JointUnits& units);
 
 /// The report as JSON.
 nlohmann::json correction_json(const CorrectionReport& report, const CorrectionTotals& totals);

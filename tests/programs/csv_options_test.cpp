@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -95,6 +97,43 @@ TEST_F(CsvOptionsOfPrograms, ThatCannotBeAreRefused) {
     EXPECT_EQ(result.exit_code, 2) << options;
     EXPECT_NE(result.errors.find(said), std::string::npos) << result.errors;
   }
+}
+
+// --degrees: q1_deg, and q1_mm of prismatic joints.
+TEST_F(CsvOptionsOfPrograms, AreOfCommandsAndPlansToo) {
+  const auto row_of = [&](const std::string& file) {  // the numbers of the joints in the first row
+    std::istringstream text(read_file(folder_ / file));
+    std::string line;
+    std::getline(text, line);
+    std::getline(text, line);
+    std::istringstream cells(line);
+    std::vector<double> out;
+    for (std::string cell; out.size() < 6 && std::getline(cells, cell, ',');) out.push_back(std::stod(cell));
+    return out;
+  };
+  const auto expect_degrees = [&](const std::string& command, const std::string& head) {
+    SCOPED_TRACE(command);
+    done(command + " --out rad.csv");
+    done(command + " --out deg.csv --degrees");
+    EXPECT_TRUE(read_file(folder_ / "deg.csv").starts_with(head)) << read_file(folder_ / "deg.csv").substr(0, 80);
+    const std::vector<double> radians = row_of("rad.csv"), degrees = row_of("deg.csv");
+    for (std::size_t j = 0; j < 6; ++j)
+      EXPECT_NEAR(degrees[j], radians[j] * 180 / std::numbers::pi, 1e-9) << "joint " << j + 1;
+  };
+  const std::string head = "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg,";
+  expect_degrees("plan_poses' --robot ur5 --count 40 --candidates 200", head + "visit");
+  done("simulate_measurements' --robot ur5 --poses deg.csv --positions-only --out measured.csv");
+  done("calibrate' --robot ur5 --data measured.csv --harmonics 0 --save model.json --out figures");
+  write_file(folder_ / "targets.csv", "q1_deg,q2_deg,q3_deg,q4_deg,q5_deg,q6_deg\n10,-70,60,0,45,5\n");
+  expect_degrees("correct' --model model.json --targets targets.csv --no-radius", head + "status");
+  EXPECT_NEAR(row_of("deg.csv")[1], -70, 1);
+
+  write_file(folder_ / "rail.json", R"({"joints": [{"type": "prismatic", "lower_mm": 0, "upper_mm": 2000},
+    {"type": "revolute", "a_mm": 300, "lower_deg": -90, "upper_deg": 90}]})");
+  done("plan_poses' --robot rail.json --count 5 --candidates 50 --out deg.csv --degrees");
+  EXPECT_TRUE(read_file(folder_ / "deg.csv").starts_with("q1_mm,q2_deg,visit")) << read_file(folder_ / "deg.csv");
+  const auto refused = run("plan_poses' --robot ur5 --choose 10 --from measured.csv --out b.csv --degrees");
+  EXPECT_EQ(refused.exit_code, 2);
 }
 
 TEST_F(CsvOptionsOfPrograms, NameColumns) {

@@ -298,8 +298,14 @@ support::CorrectionReport correct_arm(const Settings& settings, const vn::SavedM
     if (!path.points.empty()) options.start = path.points.back().command;
   };
   support::Working working("correcting");
+  vn::Index before_run = 0;
+  const auto watch = [&](const vn::Progress& progress) {
+    working.reach(static_cast<double>(before_run + progress.generation) / static_cast<double>(targets.size()));
+  };
+  options.observer = watch;
   for (const Run<N>& run : runs_of(targets, robot, options.limits)) {
     options.limits = run.limits;
+    before_run = static_cast<vn::Index>(run.first);
     const auto begin = targets.begin() + static_cast<std::ptrdiff_t>(run.first);
     const std::vector<vn::PathTarget<N>> part(begin, begin + static_cast<std::ptrdiff_t>(run.count));
     support::with_branches(robot.nominal(), arm.change(), run.limits,

@@ -166,7 +166,8 @@ support::PlanOutcome plan_new(Settings& o, const vn::DescribedRobot<N>& robot, v
 }
 
 template <int N>
-support::PlanOutcome plan_arm(Settings& o, const vn::RobotDescription& description, std::uint64_t seed) {
+support::PlanOutcome plan_arm(Settings& o, const vn::RobotDescription& description, std::uint64_t seed,
+                              const vn::ObserverRef& observer) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   vn::PlanOptions options{.count = std::max({o.count, o.add, o.choose}),
                           .oriented = o.orientations || o.camera.given()};
@@ -176,6 +177,7 @@ support::PlanOutcome plan_arm(Settings& o, const vn::RobotDescription& descripti
   o.sensor.apply(options.sensors);
   options.bin_count = o.cover;
   options.bound_iterations = o.bound ? 10 : 0;
+  options.observer = observer;
   support::PlanOutcome out = o.choose > 0 ? choose_rows(o, robot, options) : plan_new(o, robot, options, seed);
   out.oriented = options.oriented;
   const auto types = robot.arm.model().joint_types();
@@ -283,8 +285,11 @@ int run(support::Program& program) {
   const vn::RobotDescription robot = support::choose_robot(o.robot);
   o.csv.controller = robot.controller;
   support::Working working("planning");
+  const auto watch = [&](const vn::Progress& progress) {
+    working.reach(static_cast<double>(progress.generation) / static_cast<double>(std::max({o.count, o.add, o.choose})));
+  };
   const support::PlanOutcome found =
-      support::dispatch_dof(robot.dof(), [&](auto n) { return plan_arm<n()>(o, robot, program.common().seed); });
+      support::dispatch_dof(robot.dof(), [&](auto n) { return plan_arm<n()>(o, robot, program.common().seed, watch); });
   working.finish();
 
   const vn::PlannedMeasurements& plan = found.plan;

@@ -31,7 +31,7 @@ void CsvOptions::add_to(Program& program, const std::string& of, const std::stri
   program
       .add_option(("--" + of + "columns").c_str(), columns,
                   "columns that " + what + " call otherwise, ours first: q1_deg=A1,q2_deg=A2,x_mm=X", "OURS=THEIRS,..")
-      ->delimiter(',');
+      .delimiter(',');
 }
 
 void CsvOptions::add_euler_to(Program& program) {

@@ -78,7 +78,9 @@ void Working::run() {
   bool drawn = false;
   while (!ended_.wait_until(lock, next, [&] { return end_; })) {
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    fmt::print(stream_, "\r\x1b[K{}, {}", label_, duration(elapsed));
+    const double share = share_;
+    fmt::print(stream_, "\r\x1b[K{}, {}{}", label_, duration(elapsed),
+               share > 0 && share < 1 ? fmt::format(", about {} left", duration(elapsed * (1 / share - 1))) : "");
     std::fflush(stream_);
     drawn = true;
     next += std::chrono::milliseconds(500);
@@ -86,6 +88,12 @@ void Working::run() {
   if (!drawn) return;
   std::fputs("\r\x1b[K", stream_);
   std::fflush(stream_);
+}
+
+void Working::reach(double share) noexcept {
+  double before = share_;
+  while (share > before && !share_.compare_exchange_weak(before, share)) {
+  }
 }
 
 void Working::finish() {
@@ -96,6 +104,13 @@ void Working::finish() {
   }
   ended_.notify_one();
   thread_.join();
+}
+
+void WatchedThreads::for_ranges(vernier::Index n, vernier::RangeFunction work) const {
+  threads_.for_ranges(n, work);
+  constexpr double usual = 300;
+  const double passes = ++passes_;
+  working_->reach(passes / (passes + std::max(usual - passes, 0.1 * usual)));  // beyond the usual: a tenth is left
 }
 
 }  // namespace support

@@ -4,6 +4,7 @@
 /// @file
 /// Progress for people: on standard error, and only where that is a terminal and the program is not quiet.
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <thread>
 
+#include "vernier/core/executor.hpp"
 #include "vernier/core/fit_options.hpp"
 
 namespace support {
@@ -47,7 +49,7 @@ class ProgressBar {
   Clock::time_point start_ = Clock::now(), last_{};
 };
 
-/// A line that shows from two seconds on what is going on and since when, for work that does not report how far it is.
+/// A line that shows from two seconds on what is going on, since when, and how long it will take if that is known.
 /// Nothing else may be printed while it is there; it takes itself away at the end.
 class Working {
  public:
@@ -58,6 +60,8 @@ class Working {
   Working& operator=(const Working&) = delete;
   ~Working() { finish(); }
 
+  /// The share of the work that is done, 0 to 1, from any thread. It never goes back.
+  void reach(double share) noexcept;
   /// Takes the line away.
   void finish();
 
@@ -70,7 +74,23 @@ class Working {
   std::mutex mutex_{};
   std::condition_variable ended_{};
   bool end_ = false;
+  std::atomic<double> share_ = 0;
   std::thread thread_{};
+};
+
+/// Threads for the fit of an error model, which tell how far it is: most fits take about as many passes over their
+/// measurements, so that is an estimate.
+class WatchedThreads {
+ public:
+  /// @param threads at least 1
+  WatchedThreads(int threads, Working& working) : threads_(threads), working_(&working) {}
+
+  void for_ranges(vernier::Index n, vernier::RangeFunction work) const;
+
+ private:
+  vernier::ThreadExecutor threads_;
+  Working* working_;
+  mutable std::atomic<int> passes_ = 0;
 };
 
 }  // namespace support

@@ -106,11 +106,4 @@ void Working::finish() {
   thread_.join();
 }
 
-void WatchedThreads::for_ranges(vernier::Index n, vernier::RangeFunction work) const {
-  threads_.for_ranges(n, work);
-  constexpr double usual = 300;
-  const double passes = ++passes_;
-  working_->reach(passes / (passes + std::max(usual - passes, 0.1 * usual)));  // beyond the usual: a tenth is left
-}
-
 }  // namespace support

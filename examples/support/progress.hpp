@@ -13,7 +13,6 @@
 #include <string_view>
 #include <thread>
 
-#include "vernier/core/executor.hpp"
 #include "vernier/core/fit_options.hpp"
 
 namespace support {
@@ -76,21 +75,6 @@ class Working {
   bool end_ = false;
   std::atomic<double> share_ = 0;
   std::thread thread_{};
-};
-
-/// Threads for the fit of an error model, which tell how far it is: most fits take about as many passes over their
-/// measurements, so that is an estimate.
-class WatchedThreads {
- public:
-  /// @param threads at least 1
-  WatchedThreads(int threads, Working& working) : threads_(threads), working_(&working) {}
-
-  void for_ranges(vernier::Index n, vernier::RangeFunction work) const;
-
- private:
-  vernier::ThreadExecutor threads_;
-  Working* working_;
-  mutable std::atomic<int> passes_ = 0;
 };
 
 }  // namespace support

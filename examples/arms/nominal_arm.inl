@@ -62,9 +62,9 @@ class NominalArmOf final : public NominalArm {
 
   void poses(RowsView q, double* out, vn::ExecutorRef executor) const override {
     in_blocks(q, executor, [&](const double* joints, vn::Index n, vn::Index first) {
-      vn::Isometry3 poses[block];
-      evaluate(joints, n, {.poses = poses});
-      for (vn::Index i = 0; i < n; ++i) set_pose(poses[i], out + 16 * (first + i));
+      vn::detail::BlockResults results;
+      results.matrices = out + 16 * first;
+      evaluate(joints, n, results);
     });
   }
 

@@ -121,6 +121,29 @@ TYPED_TEST(PoseBlocksWhiteBox, TheInstructionSetDoesNotChangeABit) {
   });
 }
 
+// Each pose as 16 numbers, row by row; of fewer rows than a vector has lanes, too.
+TEST(MatricesWhiteBox, AreThePosesRowByRow) {
+  const vn::Framed arm(vn::robots::ur10().chain, vn::FrameParameters(vn::Vector6(1, 2, 3, 0.1, -0.2, 3.0)),
+                       vn::FrameParameters(vn::Vector6(0.1, 0, 0.2, 0, 1, 0)));
+  const double* tool = arm.tool().data();
+  vn::Rng rng(7);
+  for (const vn::Index n : {1, 2, 3, 4, 5, 41})
+    for (const auto set : {vn::InstructionSet::baseline, vn::widest_instruction_set()}) {
+      const vn::JointRows<6> joints = random_joint_rows<6>(rng, n);
+      std::vector<double> matrices(static_cast<std::size_t>(16 * n), -7);
+      vn::detail::BlockResults results;
+      results.matrices = matrices.data();
+      vn::detail::evaluate_chain(arm.chain().view(), {.base = arm.base().data(), .point = tool + 12, .tool = tool},
+                                 joints.data(), n, n, results, set);
+      for (vn::Index i = 0; i < n; ++i) {
+        const auto pose = arm.pose(vn::configuration<6>(joints, i)).matrix();
+        for (int r = 0; r < 4; ++r)
+          for (int c = 0; c < 4; ++c)
+            ASSERT_NEAR(matrices[static_cast<std::size_t>(16 * i + 4 * r + c)], pose(r, c), 1e-14) << n << ' ' << i;
+      }
+    }
+}
+
 TEST(FramedPoseBlocks, AreThePosesOneByOne) {
   const vn::Vector6 base{1, 2, 3, 0.1, -0.2, 3.0}, tool{0.1, 0, 0.2, 0, 1, 0}, outer{-0.5, 0.2, 0.1, 1, 0.3, -0.4};
   const vn::Framed inner(vn::robots::barrett_wam().chain, vn::FrameParameters(base), vn::FrameParameters(tool));

@@ -26,6 +26,7 @@ struct BlockResults {
   Isometry3* poses = nullptr;    ///< n
   double* joints = nullptr;      ///< n x 6N, Jacobians as in `JacobianRows`
   double* parameters = nullptr;  ///< n x 30N, or n x (30N + 72) with those of base and tool where frames have rates
+  double* matrices = nullptr;    ///< n x 16, each pose row by row
 };
 
 /// Evaluates a chain at n >= 1 configurations.

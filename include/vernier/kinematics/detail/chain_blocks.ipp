@@ -84,9 +84,10 @@ VERNIER_INLINE void evaluate_block(const ChainView& c, const ChainFrames& frames
     }
   }
   if (results.positions != nullptr) frame.store_positions(results.positions + first, n);
-  if (results.poses == nullptr) return;
+  if (results.poses == nullptr && results.matrices == nullptr) return;
   if (frames.tool != nullptr) frame.rotate(frames.tool);
-  frame.store_poses(results.poses + first);
+  if (results.poses != nullptr) frame.store_poses(results.poses + first);
+  if (results.matrices != nullptr) frame.store_matrices(results.matrices + 16 * first);
 }
 
 template <class Convention, int N>
@@ -107,6 +108,7 @@ VERNIER_LOCAL void evaluate_padded(const ChainView& c, const ChainFrames& frames
   const Index entries = 6 * (5 * c.joints + (frames.base_rate != nullptr ? 12 : 0));
   std::vector<double> q(static_cast<std::size_t>(padded * c.joints)), positions(3 * padded), joint_columns,
       parameter_columns;
+  double matrices[16 * padded];
   std::vector<Isometry3> poses(padded);
   for (int i = 0; i < c.joints; ++i)
     for (Index k = 0; k < padded; ++k)
@@ -115,13 +117,14 @@ VERNIER_LOCAL void evaluate_padded(const ChainView& c, const ChainFrames& frames
   if (results.parameters != nullptr) parameter_columns.resize(static_cast<std::size_t>(entries * padded));
   evaluate_chain(c, frames, q.data(), padded, padded,
                  {positions.data(), poses.data(), results.joints != nullptr ? joint_columns.data() : nullptr,
-                  results.parameters != nullptr ? parameter_columns.data() : nullptr},
+                  results.parameters != nullptr ? parameter_columns.data() : nullptr, matrices},
                  set);
   const auto copy = [n](const double* from, Index columns, double* to) {
     for (Index k = 0; k < columns; ++k) std::copy_n(from + k * padded, n, to + k * n);
   };
   if (results.positions != nullptr) copy(positions.data(), 3, results.positions);
   if (results.poses != nullptr) std::copy_n(poses.begin(), n, results.poses);
+  if (results.matrices != nullptr) std::copy_n(matrices, 16 * n, results.matrices);
   if (results.joints != nullptr) copy(joint_columns.data(), 6 * c.joints, results.joints);
   if (results.parameters != nullptr) copy(parameter_columns.data(), entries, results.parameters);
 }

@@ -94,6 +94,20 @@ struct BlockFrame : MovingFrame<typename Simd<W>::Double, 3> {
     for (int k = 0; k < 3; ++k) store<W>(first + k * stride, this->p[k]);
   }
 
+  /// Each pose as 16 numbers, row by row.
+  VERNIER_INLINE void store_matrices(double* out) const {
+    using Pair = typename Simd<2>::Double;
+    for (int lane = 0; lane < W; ++lane, out += 16) {
+      VERNIER_UNROLL
+      for (int k = 0; k < 3; ++k) {
+        store<2>(out + 4 * k, Pair{this->x[k][lane], this->y[k][lane]});
+        store<2>(out + 4 * k + 2, Pair{this->z[k][lane], this->p[k][lane]});
+      }
+      store<2>(out + 12, Pair{0, 0});
+      store<2>(out + 14, Pair{0, 1});
+    }
+  }
+
   VERNIER_INLINE void store_poses(Isometry3* out) const {
     for (int lane = 0; lane < W; ++lane) {
       double* pose = out[lane].data();

@@ -186,6 +186,18 @@ TEST(FitErrorModel, AnswersWhetherEffectsExist) {
   }
 }
 
+// Whatever a fit finds, an observer is told of as many steps, in order.
+TEST(FitErrorModel, TellsHowFarItIs) {
+  for (const double harmonic : {0.0, 1e-4}) {
+    const JointErrorSizes sizes{.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = harmonic};
+    std::vector<Index> told, all(fit_steps);
+    std::iota(all.begin(), all.end(), Index{1});
+    const auto observer = [&](const Progress& progress) { told.push_back(progress.generation); };
+    (void)fitted(measured(actual_arm(sizes), 40, 2), {.observer = observer});
+    EXPECT_EQ(told, all);
+  }
+}
+
 // A block that is used has the precision that is reported of it.
 TEST(FitErrorModel, ABlockThatIsUsedHasItsPrecision) {
   const Dataset<6> data =

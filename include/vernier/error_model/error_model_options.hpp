@@ -8,13 +8,16 @@
 #include <vector>
 
 #include "vernier/core/controller_map.hpp"
-#include "vernier/core/executor.hpp"
+#include "vernier/core/fit_options.hpp"
 #include "vernier/error_terms/joint_terms.hpp"
 #include "vernier/kinematics/joint_drive.hpp"
 
 namespace vernier {
 
 struct ArmPrior;
+
+/// Number of steps of `fit_error_model`, of which an observer is told.
+inline constexpr Index fit_steps = 10;
 
 /// Options of `fit_error_model`. The defaults serve every robot: evidence scales the expected sizes, and
 /// leave-one-pose-out errors decide which blocks of joint errors the data support.
@@ -47,6 +50,9 @@ struct ErrorModelOptions {
   double relevant_size = 0;          ///< from which an effect matters: displacement of the tool point [m]; 0: a tenth
                                      ///< of the left-out error, at least the sensor's standard deviation
   Index num_validation_poses = 200;  ///< approximate number of poses left out, one at a time, to validate a block
+  /// Who watches; must outlive the call. Told after each of `fit_steps` steps (`Progress::generation`). It cannot stop
+  /// the fit; an executor that throws does.
+  ObserverRef observer{};
 
   /// The parameters of a block that the options allow, for `JointTerms::add`; none where they do not allow it, or where
   /// the parameters follow from the measurements.

@@ -40,27 +40,38 @@ class ErrorModelFit {
     model_.solve();
     out_.stages.push_back({Stage::geometry, true, arms()});
     if (input_.sets.front().locates()) out_.estimate.geometry_left_out_errors = model_.left_out_errors();
+    reach(1);
     elastic_step();
+    reach(2);
     jointwise_step(search);
+    reach(4);
     approach_step();
+    reach(5);
     tilt_step();
+    reach(6);
     temperature_step();
+    reach(7);
     inherited_ = options_.prior != nullptr && inherit();
     if (inherited_) thermal_ = problem_.arm.thermal_rates(0).size() > 0;
     if (options_.drift) add_drift(model_);
+    reach(8);
     if (harmonics_ && !search && !inherited_) {  // with the weights that outliers have by now
       model_.learn_spectrum(4);
       model_.steps(1);
     }
     if (harmonics_ && options_.find_lines && !inherited_) find_lines(model_);
+    reach(9);
     if (options_.compliance && payloads_ && !payloads_->vary && !inherited_) leave_payload_open(payloads_->mean);
     model_.solve();
     add_last_stages();
     complete_estimate();
+    reach(fit_steps);
     return std::move(out_);
   }
 
  private:
+  VERNIER_LOCAL void reach(Index step) const { options_.observer({step, 0, 0}); }
+
   /// Compliances to gravity and payload, and bends under a payload.
   VERNIER_LOCAL void elastic_step() {
     elastic_ = problem_.arm.terms();
@@ -105,6 +116,7 @@ class ErrorModelFit {
       harmonics_ = add_joint_functions(periodic, linear);
     }
     jointwise_ = bent || harmonics_ || has_gears();
+    reach(3);
     if (jointwise_) size_again(search);
     out_.stages.push_back({Stage::jointwise, jointwise_, arms()});
   }

@@ -9,7 +9,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "complaint.hpp"
 #include "gauss_newton.hpp"

@@ -46,8 +46,15 @@ auto calibrate_with_progress(const support::Program& program, const vn::RobotDes
     if (!searching) searching.emplace("searching", total);
     searching->update(++generations);
   };
+  const auto step = [&](const vn::Progress& progress) {
+    if (fitting) fitting->reach(support::share_of_fit(progress.generation));
+  };
+  o.calibrate.errors.observer = step;
   const vn::ThreadExecutor executor(program.common().threads);
-  return calibrate(robot, o, vn::FitOptions{.seed = program.common().seed, .executor = executor, .observer = count});
+  auto found =
+      calibrate(robot, o, vn::FitOptions{.seed = program.common().seed, .executor = executor, .observer = count});
+  o.calibrate.errors.observer = {};
+  return found;
 }
 
 /// The verdict and the table of stages. On a terminal their title and the row of the deployed stage stand out.

@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "console.hpp"
+#include "vernier/error_model/error_model_options.hpp"
 
 namespace support {
 
@@ -88,6 +90,12 @@ void Working::run() {
   if (!drawn) return;
   std::fputs("\r\x1b[K", stream_);
   std::fflush(stream_);
+}
+
+double share_of_fit(vernier::Index steps) {
+  constexpr std::array<double, vernier::fit_steps + 1> shares{0,    0.03, 0.05, 0.34, 0.45, 0.55,
+                                                              0.64, 0.65, 0.82, 0.91, 1};
+  return shares[static_cast<std::size_t>(std::clamp<vernier::Index>(steps, 0, vernier::fit_steps))];
 }
 
 void Working::reach(double share) noexcept {

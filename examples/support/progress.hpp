@@ -48,6 +48,10 @@ class ProgressBar {
   Clock::time_point start_ = Clock::now(), last_{};
 };
 
+/// The share of the time of a fit of an error model that has passed after some of its steps, on average over the fits
+/// of UR10, UR5, WAM and a simulated IRB 120.
+double share_of_fit(vernier::Index steps);
+
 /// A line that shows from two seconds on what is going on, since when, and how long it will take if that is known.
 /// Nothing else may be printed while it is there; it takes itself away at the end.
 class Working {

@@ -74,15 +74,14 @@ Working::Working(std::string label, std::FILE* stream, bool shown, std::chrono::
 }
 
 void Working::run() {
-  const auto start = std::chrono::steady_clock::now();
   std::unique_lock lock(mutex_);
-  auto next = start + from_;
+  auto next = start_ + from_;
   bool drawn = false;
   while (!ended_.wait_until(lock, next, [&] { return end_; })) {
-    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const double share = share_;
-    fmt::print(stream_, "\r\x1b[K{}, {}{}", label_, duration(elapsed),
-               share > 0 && share < 1 ? fmt::format(", about {} left", duration(elapsed * (1 / share - 1))) : "");
+    const Clock::time_point now = Clock::now();
+    const double left = std::chrono::duration<double>(end_expected_ - now).count();
+    fmt::print(stream_, "\r\x1b[K{}, {}{}", label_, duration(std::chrono::duration<double>(now - start_).count()),
+               left > 0 ? fmt::format(", about {} left", duration((std::max)(left, 1.0))) : "");
     std::fflush(stream_);
     drawn = true;
     next += std::chrono::milliseconds(500);
@@ -98,10 +97,10 @@ double share_of_fit(vernier::Index steps) {
   return shares[static_cast<std::size_t>(std::clamp<vernier::Index>(steps, 0, vernier::fit_steps))];
 }
 
-void Working::reach(double share) noexcept {
-  double before = share_;
-  while (share > before && !share_.compare_exchange_weak(before, share)) {
-  }
+void Working::reach(double share) {
+  const std::lock_guard lock(mutex_);
+  if (share > 0.2 && share < 1)  // before, it says too little
+    end_expected_ = start_ + std::chrono::duration_cast<Clock::duration>((Clock::now() - start_) / share);
 }
 
 void Working::finish() {

@@ -4,7 +4,6 @@
 /// @file
 /// Progress for people: on standard error, and only where that is a terminal and the program is not quiet.
 
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -63,12 +62,14 @@ class Working {
   Working& operator=(const Working&) = delete;
   ~Working() { finish(); }
 
-  /// The share of the work that is done, 0 to 1, from any thread. It never goes back.
-  void reach(double share) noexcept;
+  /// The share of the work that is done, 0 to 1, from any thread.
+  void reach(double share);
   /// Takes the line away.
   void finish();
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void run();
 
   std::string label_;
@@ -77,7 +78,7 @@ class Working {
   std::mutex mutex_{};
   std::condition_variable ended_{};
   bool end_ = false;
-  std::atomic<double> share_ = 0;
+  Clock::time_point start_ = Clock::now(), end_expected_ = start_;
   std::thread thread_{};
 };
 

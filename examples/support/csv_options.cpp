@@ -30,7 +30,7 @@ void CsvOptions::add_to(Program& program, const std::string& of, const std::stri
   program.add_option(("--" + of + "decimal").c_str(), decimal, "decimal point of " + what + "; . without it", "C");
   program
       .add_option(("--" + of + "columns").c_str(), columns,
-                  "columns that " + what + " call otherwise, ours first: q1_deg=A1,q2_deg=A2,x_mm=X", "OURS=THEIRS,..")
+                  "other names of columns in " + what + ", ours first: q1_deg=A1,q2_deg=A2,x_mm=X", "OURS=THEIRS,..")
       .delimiter(',');
 }
 

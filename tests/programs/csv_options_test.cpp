@@ -128,10 +128,12 @@ TEST_F(CsvOptionsOfPrograms, AreOfCommandsAndPlansToo) {
   expect_degrees("correct' --model model.json --targets targets.csv --no-radius", head + "status");
   EXPECT_NEAR(row_of("deg.csv")[1], -70, 1);
 
-  write_file(folder_ / "rail.json", R"({"joints": [{"type": "prismatic", "lower_mm": 0, "upper_mm": 2000},
-    {"type": "revolute", "a_mm": 300, "lower_deg": -90, "upper_deg": 90}]})");
-  done("plan_poses' --robot rail.json --count 5 --candidates 50 --out deg.csv --degrees");
-  EXPECT_TRUE(read_file(folder_ / "deg.csv").starts_with("q1_mm,q2_deg,visit")) << read_file(folder_ / "deg.csv");
+  write_file(folder_ / "rail.json", R"({"name": "rail", "convention": "standard", "joints": [
+    {"type": "prismatic", "a_mm": 0, "alpha_deg": -90, "d_mm": 0, "theta_deg": 0, "lower_mm": 0, "upper_mm": 2000},
+    {"a_mm": 300, "alpha_deg": 90, "d_mm": 0, "theta_deg": 0, "lower_deg": -90, "upper_deg": 90},
+    {"a_mm": 200, "alpha_deg": 0, "d_mm": 0, "theta_deg": 0, "lower_deg": -90, "upper_deg": 90}]})");
+  done("plan_poses' --robot rail.json --count 20 --candidates 100 --out deg.csv --degrees");
+  EXPECT_TRUE(read_file(folder_ / "deg.csv").starts_with("q1_mm,q2_deg,q3_deg,visit")) << read_file(folder_ / "deg.csv");
   const auto refused = run("plan_poses' --robot ur5 --choose 10 --from measured.csv --out b.csv --degrees");
   EXPECT_EQ(refused.exit_code, 2);
 }

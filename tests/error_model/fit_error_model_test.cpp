@@ -190,12 +190,13 @@ TEST(FitErrorModel, AnswersWhetherEffectsExist) {
 
 // Whatever a fit finds, an observer is told of as many steps, in order.
 TEST(FitErrorModel, TellsHowFarItIs) {
+  std::vector<Index> all(fit_steps);
+  std::iota(all.begin(), all.end(), Index{1});
   for (const double harmonic : {0.0, 1e-4}) {
     const JointErrorSizes sizes{.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = harmonic};
-    std::vector<Index> told, all(fit_steps);
-    std::iota(all.begin(), all.end(), Index{1});
+    std::vector<Index> told;
     const auto observer = [&](const Progress& progress) { told.push_back(progress.generation); };
-    (void)fitted(measured(actual_arm(sizes), 40, 2), {.observer = observer});
+    (void)fitted(measured(actual_arm(sizes), 40, 2), {.harmonics = 2, .drift = false, .observer = observer});
     EXPECT_EQ(told, all);
   }
 }

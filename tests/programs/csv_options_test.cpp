@@ -133,7 +133,8 @@ TEST_F(CsvOptionsOfPrograms, AreOfCommandsAndPlansToo) {
     {"a_mm": 300, "alpha_deg": 90, "d_mm": 0, "theta_deg": 0, "lower_deg": -90, "upper_deg": 90},
     {"a_mm": 200, "alpha_deg": 0, "d_mm": 0, "theta_deg": 0, "lower_deg": -90, "upper_deg": 90}]})");
   done("plan_poses' --robot rail.json --count 20 --candidates 100 --out deg.csv --degrees");
-  EXPECT_TRUE(read_file(folder_ / "deg.csv").starts_with("q1_mm,q2_deg,q3_deg,visit")) << read_file(folder_ / "deg.csv");
+  EXPECT_TRUE(read_file(folder_ / "deg.csv").starts_with("q1_mm,q2_deg,q3_deg,visit"))
+      << read_file(folder_ / "deg.csv");
   const auto refused = run("plan_poses' --robot ur5 --choose 10 --from measured.csv --out b.csv --degrees");
   EXPECT_EQ(refused.exit_code, 2);
 }

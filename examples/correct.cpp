@@ -416,6 +416,10 @@ int run(support::Program& program) {
   for (const char* option : {"--tool", "--robot-base", "--flange"})
     if (in_place.program.empty() && !base_frame && program.given(option))
       throw support::UsageError(fmt::format("{} is of a --program, or of poses with --frame base", option));
+  for (const char* option : {"--poses", "--linear", "--tolerance-mm", "--max-step-deg", "--hold", "--all-branches",
+                             "--no-radius", "--degrees", "--separator", "--decimal", "--columns", "--euler"})
+    if (!in_place.program.empty() && program.given(option))
+      throw support::UsageError(fmt::format("{} is of --targets, not of a --program", option));
   if (!in_place.program.empty() && base_frame) throw support::UsageError("--frame is of --targets");
   if (!in_place.program.empty())
     return support::correct_program(

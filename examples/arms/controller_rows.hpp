@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "vernier/core/check.hpp"
-#include "vernier/core/simd.hpp"
 #include "vernier/kinematics/in_controller_joints.hpp"
 
 namespace support {
@@ -38,16 +37,8 @@ inline vernier::Isometry3 pose_at(const double* row) {
 }
 /// Writes a pose as 16 numbers, row by row.
 inline void set_pose(const vernier::Isometry3& pose, double* row) noexcept {
-  using Pair = vernier::detail::Simd<2>::Double;
-  const double* columns = pose.data();
-  for (int r = 0; r < 4; r += 2)
-    for (int c = 0; c < 4; c += 2) {  // four numbers at a time
-      Pair left, right;
-      vernier::detail::load<2>(left, columns + 4 * c + r);
-      vernier::detail::load<2>(right, columns + 4 * (c + 1) + r);
-      vernier::detail::store<2>(row + 4 * r + c, Pair{left[0], right[0]});
-      vernier::detail::store<2>(row + 4 * (r + 1) + c, Pair{left[1], right[1]});
-    }
+  for (int r = 0; r < 4; ++r)
+    for (int c = 0; c < 4; ++c) row[4 * r + c] = pose.matrix()(r, c);
 }
 /// Writes a Jacobian as 6 rows of joints of the controller.
 template <int N>

@@ -62,9 +62,7 @@ class NominalArmOf final : public NominalArm {
 
   void poses(RowsView q, double* out, vn::ExecutorRef executor) const override {
     in_blocks(q, executor, [&](const double* joints, vn::Index n, vn::Index first) {
-      vn::detail::BlockResults results;
-      results.matrices = out + 16 * first;
-      evaluate(joints, n, results);
+      evaluate(joints, n, {.matrices = out + 16 * first});
     });
   }
 

@@ -536,6 +536,9 @@ TEST_F(CorrectProgram, WrongUseIsRefusedInOneLine) {
   expect("--program none.mod --out b.mod", 1, "none.mod");
   expect("--program cut.mod --out b.mod", 1, "cut.mod, line 2: a bracket [ is not closed");
   expect("--program a.mod --tool 1,2,3 --out b.mod", 2, "--tool 1,2,3: not six numbers");
+  for (const std::string option : {"--degrees", "--linear", "--poses", "--hold q1_deg=1", "--columns q1_deg=A1"})
+    expect("--program a.mod --out b.mod " + option, 2,
+           option.substr(0, option.find(' ')) + " is of --targets, not of a --program");
   expect("--program a.mod --assume-harmless nosuch --out b.mod", 2,
          "--assume-harmless 'nosuch': a.mod does not name it");
   expect("--program a.mod --controller none.conf --out b.mod", 1, "none.conf");

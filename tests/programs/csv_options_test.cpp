@@ -100,7 +100,7 @@ TEST_F(CsvOptionsOfPrograms, ThatCannotBeAreRefused) {
 }
 
 // --degrees: q1_deg, and q1_mm of prismatic joints.
-TEST_F(CsvOptionsOfPrograms, AreOfCommandsAndPlansToo) {
+TEST_F(CsvOptionsOfPrograms, WriteDegrees) {
   const auto row_of = [&](const std::string& file) {  // the numbers of the joints in the first row
     std::istringstream text(read_file(folder_ / file));
     std::string line;
@@ -146,7 +146,7 @@ TEST_F(CsvOptionsOfPrograms, NameColumns) {
   const auto refused = run("simulate_measurements' --robot ur5 --poses a.csv --out theirs.csv");
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_NE(refused.errors.find("a.csv, line 1: no column q1_rad or q1_deg in the header (A1, A2, A3, A4, Pitch, "
-                                "q6_deg); if that is 'A1', state --columns q1_rad=A1 or q1_deg=A1"),
+                                "q6_deg); if that is A1, state --columns 'q1_rad=A1' or 'q1_deg=A1'"),
             std::string::npos)
       << refused.errors;
   done(

@@ -146,8 +146,8 @@ VERNIER_IMPL CsvColumn CsvTable::require_column(std::string_view stem, const Qua
   const auto name = [&](std::size_t unit) { return message(stem, quantity.units[unit].first); };
   for (const std::string_view other : header_)
     if (hint.empty() && names_joint(other, stem))
-      hint = message("; if that is '", printable(other), "', state --columns ", name(0), "=", printable(other), " or ",
-                     name(1), "=", printable(other), " (CsvFormat)");
+      hint = message("; if that is ", printable(other), ", state --columns '", name(0), "=", printable(other), "' or '",
+                     name(1), "=", printable(other), "' (CsvFormat)");
   throw DataError(message(file_, ", line ", header_line_, ": no column ", name(0),
                           quantity.units.size() > 1 ? " or " + name(1) : std::string(), " in the header (", present,
                           ")", hint));

@@ -59,6 +59,30 @@ TEST(NormalEquations, AreThoseOfTheExpandedRows) {
   }
 }
 
+// Sums of factored unknowns are those of equations with two dense unknowns less, and no others are.
+TEST(NormalEquations, TakeSumsOfTheSameFunctions) {
+  const RandomBlocks blocks(300, 7);
+  RandomBlocks fewer = blocks;
+  fewer.dense = 3;
+  for (RowBlock& row : fewer.rows) {
+    Rows6 some(6, 3);
+    std::copy_n(row.dense.data(), some.size(), some.data());
+    row.dense = some;
+  }
+  NormalEquations known = fewer.normal();
+  const NormalEquations wanted = blocks.normal();
+  const auto with_known = [&] {
+    return blocks.with_system([&](const BlockSystem& system) { return NormalEquations(system, {}, {}, &known); });
+  };
+  EXPECT_EQ(RealMatrix(with_known().matrix), RealMatrix(wanted.matrix));
+  EXPECT_EQ(RealMatrix(with_known().gradient), RealMatrix(wanted.gradient));
+  known.matrix *= 2;
+  RealMatrix doubled = wanted.matrix;
+  for (Index c = 5; c < 15; ++c)
+    for (Index r = 5; r < 15; ++r) doubled(r, c) *= 2;
+  EXPECT_EQ(RealMatrix(with_known().matrix), doubled);
+}
+
 // A prior with correlations, as rows of its Cholesky factor would be.
 TEST(NormalEquations, AJointPriorActsAsMeasurements) {
   const RandomBlocks blocks(15, 4);

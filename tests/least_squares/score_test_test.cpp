@@ -86,6 +86,22 @@ double rate(double level, Index n, double spread, double truth, const std::vecto
   return static_cast<double>(below) / draws;
 }
 
+TEST(ScoreTest, TakesEquationsThatAreFactorised) {
+  const RandomBlocks blocks = noisy(30, 1, 0, 0.3);
+  VectorX precisions = VectorX::Constant(15, 1e-3), held = precisions;
+  for (const Index k : group) held(k) = vernier::suppressing_precision;
+  const VectorX steps = VectorX::Zero(15);
+  blocks.with_system([&](const BlockSystem& system) {
+    const NormalEquations normal(system);
+    const vernier::FactorisedEquations with(normal, precisions, steps), without(normal, held, steps);
+    const ScoreTest found = score_test(system, with, without, precisions, steps, group),
+                    usual = score_test(system, normal, precisions, steps, group);
+    EXPECT_EQ(found.p, usual.p);
+    EXPECT_EQ(found.noise, usual.noise);
+    EXPECT_EQ(found.estimates, usual.estimates);
+  });
+}
+
 // Three standard deviations above the level: 0.05 + 3 sqrt(0.05 0.95 / 400).
 TEST(ScoreTest, FindsNothingWhereThereIsNothing) {
   EXPECT_LE(rate(0.05, 20, 0, 0), 0.083);

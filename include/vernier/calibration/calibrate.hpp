@@ -4,6 +4,7 @@
 /// @file
 /// The calibration pipeline: from measurements to everything known of a real arm.
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -111,6 +112,9 @@ std::vector<OutlyingRow> outlying_rows(const FittedErrorModel<Chain>& errors,
                                        const Measurements<Chain::dof>& measured) {
   std::vector<OutlyingRow> out;
   for (std::size_t s = 0; s < measured.poses().size(); ++s) {
+    // where the noise of a visit explains every error, there is no need to ask how well the unknowns are known
+    const VectorX by_noise = predicted_errors<Chain>(errors, s, measured.poses()[s], nullptr, false).normalised;
+    if (std::all_of(by_noise.begin(), by_noise.end(), [](double factor) { return factor <= least_outlier; })) continue;
     const PredictedErrors predicted = predicted_errors(errors, s, measured.poses()[s]);
     for (OutlyingRow& one : outlying_rows(measured.sets()[s], s, predicted.errors, predicted.normalised))
       out.push_back(std::move(one));

@@ -194,16 +194,18 @@ struct PredictedErrors {
 /// Errors of visits of one station, beside their predicted covariances: of the unknowns, of a visit, and of drift
 /// beyond the session.
 /// @param learned takes a position error that was learned off, in the base frame of the first station; null for none
+/// @param of_unknowns whether the covariance has that of the unknowns; without it the normalised errors are too large
 template <class Chain>
 PredictedErrors predicted_errors(const FittedErrorModel<Chain>& errors, std::size_t station,
-                                 const Dataset<Chain::dof>& data,
-                                 const LearnedRemainder<Chain::dof>* learned = nullptr) {
+                                 const Dataset<Chain::dof>& data, const LearnedRemainder<Chain::dof>* learned = nullptr,
+                                 bool of_unknowns = true) {
   const ErrorModel<Chain>& model = errors.models()[station];
   PredictedErrors out{PointRows(data.size(), 3), VectorX(data.size())};
   VectorX gates(data.size());
   for (Index i = 0; i < data.size(); ++i) gates(i) = model.gate(data.joints(i));
-  const std::vector<Matrix6> covariances = errors.visit_covariances(
-      data.joints(), gates, static_cast<int>(station), data.previous(), data.temperatures(), data.payloads());
+  const std::vector<Matrix6> covariances =
+      errors.visit_covariances(data.joints(), gates, static_cast<int>(station), data.previous(), data.temperatures(),
+                               data.payloads(), of_unknowns);
   const std::vector<Isometry3> poses = predicted_visits(model, data, true, {});
   const Matrix3 back = rotation(errors.model().identified().base()).transpose();
   const Matrix3 turn = rotation(model.identified().base()) * back;

@@ -123,10 +123,12 @@ struct ErrorModelEstimate {
   /// @param previous     n x joints; no rows where unknown
   /// @param temperatures n; none where unknown
   /// @param payloads     n x 4, see `Dataset::payloads`; no rows for the mean one of the measurements
+  /// @param of_unknowns  whether that of the unknowns is part of them, which takes nearly all of the time
   VERNIER_API std::vector<Matrix6> visit_covariances(const ConstMatrixRef& joints, const ConstVectorRef& gates,
                                                      int station, const ConstMatrixRef& previous,
                                                      const ConstVectorRef& temperatures,
-                                                     const ConstMatrixRef& payloads = MatrixX()) const;
+                                                     const ConstMatrixRef& payloads = MatrixX(),
+                                                     bool of_unknowns = true) const;
 };
 
 }  // namespace vernier

@@ -114,13 +114,11 @@ VERNIER_LOCAL inline MatrixX one_row(const ConstVectorRef& values) {
   return out;
 }
 
-/// Covariances of modelled poses at n configurations; `rows` are the linearised poses.
-VERNIER_LOCAL std::vector<Matrix6> pose_covariances(const ErrorModelEstimate& estimate, const ConstMatrixRef& joints,
-                                                    int station, const ConstMatrixRef& previous, const VectorX& warmer,
-                                                    const MatrixX& payloads, std::vector<RowBlock>& rows) {
-  const Index n = joints.rows(), unknowns = estimate.arm.size();
-  rows.resize(static_cast<std::size_t>(n));
-  estimate.arm.linearise(station, joints, previous, rows.data(), true, warmer, payloads);
+/// Covariances of modelled poses by the unknowns, at n configurations.
+/// @param rows the linearised poses
+VERNIER_LOCAL std::vector<Matrix6> pose_covariances(const ErrorModelEstimate& estimate,
+                                                    const std::vector<RowBlock>& rows) {
+  const Index n = static_cast<Index>(rows.size()), unknowns = estimate.arm.size();
   MatrixX all(unknowns, 6 * n);  // the rows of each pose are contiguous columns
   Rows6 one(6, unknowns);
   for (Index i = 0; i < n; ++i) {
@@ -147,9 +145,9 @@ VERNIER_LOCAL inline void add_outer_product(const Vector6& x, double factor, Mat
 }  // namespace detail
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::model_covariance(const ConstVectorRef& q, int station) const {
-  std::vector<RowBlock> rows;
-  return detail::pose_covariances(*this, detail::one_row(q), station, MatrixX(), VectorX::Zero(1), MatrixX(), rows)
-      .front();
+  std::vector<RowBlock> rows(1);
+  arm.linearise(station, detail::one_row(q), MatrixX(), rows.data(), true, VectorX::Zero(1), MatrixX());
+  return detail::pose_covariances(*this, rows).front();
 }
 
 VERNIER_IMPL Matrix6 ErrorModelEstimate::visit_covariance(const ConstVectorRef& q, double gate, int station,
@@ -160,11 +158,9 @@ VERNIER_IMPL Matrix6 ErrorModelEstimate::visit_covariance(const ConstVectorRef& 
       .front();
 }
 
-VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const ConstMatrixRef& joints,
-                                                                        const ConstVectorRef& gates, int station,
-                                                                        const ConstMatrixRef& previous,
-                                                                        const ConstVectorRef& temperatures,
-                                                                        const ConstMatrixRef& payloads) const {
+VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(
+    const ConstMatrixRef& joints, const ConstVectorRef& gates, int station, const ConstMatrixRef& previous,
+    const ConstVectorRef& temperatures, const ConstMatrixRef& payloads, bool of_unknowns) const {
   constexpr Index batch = 64;
   std::vector<Matrix6> all;
   const VectorX steps = arm.steps();
@@ -180,8 +176,10 @@ VERNIER_IMPL std::vector<Matrix6> ErrorModelEstimate::visit_covariances(const Co
         known[static_cast<std::size_t>(i)] = true;
         warmer(i) = temperatures(first + i) - mean_temperature;
       }
-    std::vector<RowBlock> rows, warm;
-    const std::vector<Matrix6> modelled = detail::pose_covariances(*this, q, station, before, warmer, carried, rows);
+    std::vector<RowBlock> rows(static_cast<std::size_t>(n)), warm;
+    arm.linearise(station, q, before, rows.data(), true, warmer, carried);
+    const std::vector<Matrix6> modelled =
+        of_unknowns ? detail::pose_covariances(*this, rows) : std::vector<Matrix6>(rows.size(), Matrix6::Zero());
     if (temperature_std > 0) {
       warm.resize(static_cast<std::size_t>(n));
       arm.linearise(station, q, before, warm.data(), true, VectorX::Constant(n, temperature_std), carried);

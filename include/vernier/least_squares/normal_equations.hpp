@@ -50,9 +50,12 @@ struct NormalEquations {
   ExecutorRef executor{};       ///< computes these sums and what follows from them; must outlive this
 
   /// Sums over all blocks; the bits do not depend on the executor.
+  /// @param same_functions equations of the same blocks with the same factored unknowns and other dense ones: the sums
+  ///                       of factored unknowns alone, nearly all of the work, are copied from them. Null for none;
+  ///                       without a `JointPrior`
   /// @complexity O(blocks u^2 / 6) for u unknowns, memory O(u^2)
   VERNIER_API explicit NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors = {},
-                                       ExecutorRef executor = {});
+                                       ExecutorRef executor = {}, const NormalEquations* same_functions = nullptr);
 
   /// Adds a prior with correlations to matrix, gradient and cost, as if it were measurements.
   /// @param joint the prior

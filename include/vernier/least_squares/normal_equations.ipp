@@ -106,7 +106,7 @@ VERNIER_LOCAL void add_local(const BlockSystem& system, const std::vector<LocalP
 }  // namespace detail
 
 VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors,
-                                              ExecutorRef of_sums)
+                                              ExecutorRef of_sums, const NormalEquations* same_functions)
     : matrix(MatrixX::Zero(system.unknowns(), system.unknowns())),
       gradient(VectorX::Zero(system.unknowns())),
       executor(of_sums) {
@@ -158,7 +158,8 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
       detail::add_transposed_product(VERNIER_LATER(matrix).block(0, at, d, h_j.cols()),
                                      VERNIER_LATER(mixed).block(0, j * d, n, d), h_j);
     }
-    executor.for_ranges(all > d ? static_cast<Index>(pairs.size()) : 0, [&](Index from, Index to) {
+    executor.for_ranges(all > d && same_functions == nullptr ? static_cast<Index>(pairs.size()) : 0, [&](Index from,
+                                                                                                         Index to) {
       for (Index pair = from; pair < to; ++pair) {
         const Index i = pairs[static_cast<std::size_t>(pair)][0], j = pairs[static_cast<std::size_t>(pair)][1];
         const auto h_i = functions(i), h_j = functions(j);
@@ -178,6 +179,9 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
       }
     });
   }
+  if (same_functions != nullptr)
+    VERNIER_LATER(matrix).bottomRightCorner(all - d, all - d) =
+        VERNIER_LATER(same_functions->matrix).bottomRightCorner(all - d, all - d);
   for (Index c = 0; c < all; ++c)
     for (Index r = c + 1; r < all; ++r) matrix(r, c) = matrix(c, r);
   if (system.local_states > 0) detail::add_local(system, local_priors, *this);

@@ -48,6 +48,13 @@ VERNIER_API ScoreTest score_test(const BlockSystem& system, const NormalEquation
                                  const VectorX& steps, const UnknownGroup& group,
                                  const std::vector<Index>& clusters = {}, const VectorX& local_steps = {},
                                  Index draws = 1999);
+/// The same of equations that are factorised, which saves two factorisations.
+/// @param with    solved with `precisions`
+/// @param without solved with the group held at zero, by `suppressing_precision`
+VERNIER_API ScoreTest score_test(const BlockSystem& system, const FactorisedEquations& with,
+                                 const FactorisedEquations& without, const VectorX& precisions, const VectorX& steps,
+                                 const UnknownGroup& group, const std::vector<Index>& clusters = {},
+                                 Index draws = 1999);
 
 }  // namespace vernier
 

@@ -27,23 +27,19 @@ VERNIER_LOCAL MatrixX columns_of(const MatrixX& a, const std::vector<Index>& col
 
 /// The problem without a group of unknowns, solved, and the group's columns less what the others take over.
 struct WithoutGroup {
-  FactorisedEquations solved;       ///< with the group held at zero
-  std::vector<Index> others;        ///< unknowns that are not of the group
-  std::vector<Index> tested;        ///< of the group, those of which the data tell most
-  MatrixX taken_over{};             ///< others x tested: what they change by for one of the tested
-  MatrixX factor{}, information{};  ///< Cholesky factor of the others; of the tested ones
+  const FactorisedEquations& solved;  ///< with the group held at zero
+  std::vector<Index> others;          ///< unknowns that are not of the group
+  std::vector<Index> tested;          ///< of the group, those of which the data tell most
+  MatrixX taken_over{};               ///< others x tested: what they change by for one of the tested
+  MatrixX factor{}, information{};    ///< Cholesky factor of the others; of the tested ones
 };
 
-/// Solves without the group.
-VERNIER_LOCAL WithoutGroup without_group(const NormalEquations& normal, const VectorX& precisions, const VectorX& steps,
-                                         const UnknownGroup& group, const VectorX& local_steps) {
-  VectorX held = precisions;
+/// @param solved with the group held at zero
+VERNIER_LOCAL WithoutGroup without_group(const FactorisedEquations& solved, const VectorX& precisions,
+                                         const UnknownGroup& group) {
   std::vector<bool> of_group(static_cast<std::size_t>(precisions.size()), false);
-  for (const Index k : group) {
-    held(k) = suppressing_precision;
-    of_group[static_cast<std::size_t>(k)] = true;
-  }
-  WithoutGroup out{FactorisedEquations(normal, held, steps, local_steps), {}, {}};
+  for (const Index k : group) of_group[static_cast<std::size_t>(k)] = true;
+  WithoutGroup out{solved, {}, {}};
   for (Index k = 0; k < precisions.size(); ++k)
     if (!of_group[static_cast<std::size_t>(k)]) out.others.push_back(k);
   if (!out.solved.usable()) return out;
@@ -224,8 +220,16 @@ VERNIER_LOCAL double share_as_large(const Scores& scores, Index draws) {
 VERNIER_IMPL ScoreTest score_test(const BlockSystem& system, const NormalEquations& normal, const VectorX& precisions,
                                   const VectorX& steps, const UnknownGroup& group, const std::vector<Index>& clusters,
                                   const VectorX& local_steps, Index draws) {
-  const detail::WithoutGroup at = detail::without_group(normal, precisions, steps, group, local_steps);
   const FactorisedEquations with(normal, precisions, steps, local_steps);
+  VectorX held = precisions;
+  for (const Index k : group) held(k) = suppressing_precision;
+  return score_test(system, with, with.with(held, steps), precisions, steps, group, clusters, draws);
+}
+
+VERNIER_IMPL ScoreTest score_test(const BlockSystem& system, const FactorisedEquations& with,
+                                  const FactorisedEquations& without, const VectorX& precisions, const VectorX& steps,
+                                  const UnknownGroup& group, const std::vector<Index>& clusters, Index draws) {
+  const detail::WithoutGroup at = detail::without_group(without, precisions, group);
   if (at.taken_over.size() == 0 || !with.usable()) return {};
   const detail::SymmetricEigen directions = detail::symmetric_eigen(at.information);
   const Index m = directions.values.size();

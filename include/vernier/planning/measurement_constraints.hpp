@@ -49,7 +49,7 @@ struct MeasurementConstraints {
 enum class Rejection { none, joint_limits, tool_box, range, acceptance, line_of_sight, self_collision };
 /// Number of `Rejection`s, `none` included.
 inline constexpr std::size_t num_rejections = 7;
-/// Words for each, e.g. `out of the joint limits`.
+/// Words for each, e.g. `near or beyond the joint limits`.
 VERNIER_API const char* name_of(Rejection reason);
 
 /// Numbers of configurations by what became of them.

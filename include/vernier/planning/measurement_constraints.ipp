@@ -14,7 +14,7 @@ namespace vernier {
 
 VERNIER_IMPL const char* name_of(Rejection reason) {
   switch (reason) {
-    case Rejection::joint_limits: return "out of the joint limits";
+    case Rejection::joint_limits: return "near or beyond the joint limits";
     case Rejection::tool_box: return "tool out of its box";
     case Rejection::range: return "out of the tracker's range";
     case Rejection::acceptance: return "reflector turned away";

@@ -13,6 +13,10 @@
 
 namespace vernier::detail {
 
+/// Of a studentised residual (three components): how many spreads an outlier is off at least. Noise reaches it in one
+/// of 1e16 rows, and one of 1e6 where its tails are those of Student's distribution with 8 degrees of freedom.
+inline constexpr double least_outlier = 9;
+
 /// Rows of one station that are outliers by studentised residuals of a robust fit of frames and geometry, see
 /// `leave_out_rows`. None where there are fewer than 10 rows, or where the arm as designed misses most rows: then the
 /// data are not of this arm.

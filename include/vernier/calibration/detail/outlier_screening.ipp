@@ -13,10 +13,6 @@
 
 namespace vernier::detail {
 
-/// Of a studentised residual (three components): how many spreads an outlier is off at least. Noise reaches it in one
-/// of 1e16 rows, and one of 1e6 where its tails are those of Student's distribution with 8 degrees of freedom.
-inline constexpr double least_outlier = 9;
-
 /// An outlier, named.
 VERNIER_LOCAL OutlyingRow named_row(const MeasuredSet& data, std::size_t station, Index row) {
   OutlyingRow out{.station = station, .row = row};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <utility>
+
 #include "vernier/core/same_value.hpp"
 #include "vernier/error_model/detail/drift_selection.hpp"
 #include "vernier/error_model/detail/session_columns.hpp"
@@ -23,23 +25,27 @@ VERNIER_LOCAL BlockChoice choose_drift(const ModelSelection& model, Block block,
       prior.values[k] = expected[k] * (unknown >= first && unknown < end ? factor : 1);
     }
   };
-  const auto evidence = [&](double factor) {
+  const auto solve = [&](double factor) {
     scale(factor);
-    return log_evidence(at.normal, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps), precisions,
-                        at.steps, model.problem.measured_values(), at.local_steps);
+    return FactorisedEquations(at.normal, precisions, at.steps, at.local_steps);
   };
-  double best = 1, most = evidence(1);
+  const auto evidence = [&](const FactorisedEquations& solved) {  // as the prior was scaled last
+    return log_evidence(at.normal, solved, precisions, at.steps, model.problem.measured_values(), at.local_steps);
+  };
+  FactorisedEquations with = solve(1);
+  double best = 1, most = evidence(with);
   for (const double step : {4.0, 0.25})
     for (double factor = step; same_value(best, factor / step) && factor >= lowest && factor <= 64; factor *= step) {
-      const double reached = evidence(factor);
+      FactorisedEquations now = solve(factor);
+      const double reached = evidence(now);
       if (!(reached > most)) break;
+      with = std::move(now);
       most = reached;
       best = factor;
     }
-  scale(suppressing_precision);
-  const VectorX without = error_norms(model.left_out(at, precisions));
-  scale(best);
-  return model.choice_between(block, score, error_norms(model.left_out(at, precisions)), without, best);
+  const VectorX errors = error_norms(model.left_out(at, with));
+  const VectorX without = error_norms(model.left_out(at, solve(suppressing_precision)));
+  return model.choice_between(block, score, errors, without, best);
 }
 
 /// Lets the joints' zeros drift beside the bases, if they do.
@@ -47,15 +53,16 @@ VERNIER_LOCAL void add_joint_drift(ModelSelection& model) {
   CalibrationProblem& problem = model.problem;
   problem.start_joint_drift();
   problem.joint_drift_precision = 1;
-  model.changed();
+  model.extended();
   const BlockChoice choice = choose_drift(model, Block::joint_drift, 6, 6 + problem.arm.geometry(0).joints(), 0.25);
   model.blocks.push_back(choice);
   problem.joint_drift_precision = choice.precision;
-  if (choice.used)
+  if (choice.used) {
     model.steps(1);
-  else
+  } else {
     problem.stop_joint_drift();
-  model.changed();
+    model.extended();
+  }
 }
 
 VERNIER_IMPL bool add_drift(ModelSelection& model) {
@@ -66,15 +73,16 @@ VERNIER_IMPL bool add_drift(ModelSelection& model) {
     problem.stop_drift();
     return false;
   }
-  model.changed();
+  model.extended();
   const BlockChoice choice = choose_drift(model, Block::drift, 0, 6, 0.0625);
   model.blocks.push_back(choice);
   problem.drift_precision = choice.precision;
-  if (choice.used)
+  if (choice.used) {
     model.steps(1);
-  else
+  } else {
     problem.stop_drift();
-  model.changed();
+    model.extended();
+  }
   if (choice.used) add_joint_drift(model);
   return choice.used;
 }

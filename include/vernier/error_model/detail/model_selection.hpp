@@ -42,7 +42,15 @@ class ModelSelection {
   };
   /// Computed again only after a change.
   VERNIER_API const Linearised& linearised() const;
-  VERNIER_API void changed() { linearised_.reset(); }
+  VERNIER_API void changed() {
+    linearised_.reset();
+    before_.reset();
+  }
+  /// Call in place of `changed` after unknowns were added at zero, or such unknowns were taken back: of harmonics that
+  /// stay, the sums are known.
+  VERNIER_API void extended();
+  /// Equations at the present values, of which those of the harmonics may be copied; null where there are none.
+  const NormalEquations* of_same_functions() const { return problem.prior ? nullptr : &linearised().normal; }
 
   /// Solves the problem as it is.
   VERNIER_API void solve();
@@ -51,6 +59,8 @@ class ModelSelection {
 
   /// Poses left out one at a time, under some priors; ten blocks of neighbouring poses, if the poses are ordered.
   VERNIER_API LeftOutBlocks left_out(const Linearised& at, const VectorX& precisions) const;
+  /// The same of equations that are factorised.
+  VERNIER_API LeftOutBlocks left_out(const Linearised& at, const FactorisedEquations& solved) const;
   /// Norms of their position errors as the problem is [m].
   VERNIER_API VectorX left_out_errors() const;
   /// Whether poses follow a path, and are left out in blocks of neighbours.
@@ -94,6 +104,9 @@ class ModelSelection {
   std::vector<Index> clusters_;       // of each block
   std::vector<Index> left_together_;  // of each validation block, if poses are ordered; else empty
   mutable std::optional<Linearised> linearised_{};
+  mutable std::optional<NormalEquations> before_{};  // at the same values, with `harmonics_`
+  mutable std::vector<Fourier> harmonics_{};         // of what was linearised last
+  mutable std::vector<double> harmonic_scales_{};    // of their coefficients
 };
 
 }  // namespace vernier::detail

@@ -48,10 +48,22 @@ VERNIER_IMPL ModelSelection::ModelSelection(CalibrationProblem start, const Erro
 }
 
 VERNIER_IMPL const ModelSelection::Linearised& ModelSelection::linearised() const {
-  if (!linearised_)
-    linearised_.emplace(
-        Linearised{problem.system(), problem.normal_equations(), problem.arm.steps(), problem.drift_steps()});
+  if (linearised_) return *linearised_;
+  const VectorX all = problem.arm.scales();
+  std::vector<double> scales(all.begin() + problem.arm.num_dense(), all.end());
+  const std::vector<Fourier>& now = problem.arm.terms().transmission;
+  const bool same = before_ && now == harmonics_ && scales == harmonic_scales_;
+  linearised_.emplace(Linearised{problem.system(), problem.normal_equations(same ? &*before_ : nullptr),
+                                 problem.arm.steps(), problem.drift_steps()});
+  before_.reset();
+  harmonics_ = now;
+  harmonic_scales_ = std::move(scales);
   return *linearised_;
+}
+
+VERNIER_IMPL void ModelSelection::extended() {
+  if (linearised_ && !problem.prior) before_ = std::move(linearised_->normal);
+  linearised_.reset();
 }
 
 VERNIER_IMPL void ModelSelection::solve() {
@@ -65,8 +77,11 @@ VERNIER_IMPL void ModelSelection::steps(int count) {
 }
 
 VERNIER_IMPL LeftOutBlocks ModelSelection::left_out(const Linearised& at, const VectorX& precisions) const {
+  return left_out(at, FactorisedEquations(at.normal, precisions, at.steps, at.local_steps));
+}
+
+VERNIER_IMPL LeftOutBlocks ModelSelection::left_out(const Linearised& at, const FactorisedEquations& solved) const {
   const Stopwatch watch(leave_one_out_seconds);
-  const FactorisedEquations solved(at.normal, precisions, at.steps, at.local_steps);
   if (left_together_.empty()) return leave_one_out(at.system, solved, stride);
   BlockSystem system = at.system;
   system.poses = left_together_;
@@ -93,7 +108,7 @@ VERNIER_IMPL void ModelSelection::extend_terms(const JointTerms& terms) {
   const std::vector<Index> hidden = hidden_terms(problem, nominal_);
   for (const Index k : hidden) sizes(k) *= held;
   if (!hidden.empty()) problem.arm.set_terms(terms, sizes, precisions);
-  changed();
+  extended();
 }
 
 VERNIER_IMPL bool ModelSelection::add(Block block, const JointTerms& terms) {
@@ -112,7 +127,7 @@ VERNIER_IMPL bool ModelSelection::add(Block block, const JointTerms& terms) {
     for (const Index k : unknowns(now.begin, now.count)) group.push_back(k);
   if (choose_by_evidence(block, group)) return true;
   problem.arm = before;
-  changed();
+  extended();
   return false;
 }
 
@@ -171,9 +186,10 @@ VERNIER_IMPL bool ModelSelection::choose_by_evidence(Block block, const UnknownG
   const VectorX sized = scale_priors(at.normal, before, at.steps, problem.measured_values(), group, at.local_steps);
   VectorX suppressed = sized;
   for (const Index k : group) suppressed(k) = suppressing_precision;
-  if (!score) score = score_test(at.system, at.normal, sized, at.steps, group, clusters_, at.local_steps);
-  blocks.push_back(choice_between(block, *score, error_norms(left_out(at, sized)),
-                                  error_norms(left_out(at, suppressed)), sized(group.front())));
+  const FactorisedEquations with(at.normal, sized, at.steps, at.local_steps), without = with.with(suppressed, at.steps);
+  if (!score) score = score_test(at.system, with, without, sized, at.steps, group, clusters_);
+  blocks.push_back(choice_between(block, *score, error_norms(left_out(at, with)), error_norms(left_out(at, without)),
+                                  sized(group.front())));
   const bool used = blocks.back().used;
   problem.arm.set_precisions(used ? sized : suppressed);
   return used;

@@ -87,7 +87,7 @@ VERNIER_IMPL ScoreTest SessionColumns::test(const UnknownGroup& group, Index com
   }
   for (Index k = 0; k < added_; ++k)
     if (k % size_ >= components) all_precisions(dense_ + k) = suppressing_precision;
-  const NormalEquations normal(system, {}, model_.problem.executor);
+  const NormalEquations normal(system, {}, model_.problem.executor, model_.of_same_functions());
   return score_test(system, normal, all_precisions, steps, group, model_.clusters());
 }
 

@@ -79,11 +79,11 @@ VERNIER_IMPL bool add_temperature(ModelSelection& model, double expansion) {
   if (timed) {
     problem.start_drift(40);
     problem.drift_precision = 1;
-    model.changed();
+    model.extended();
     score = SessionColumns(model).beside_drift(added);
     problem.stop_drift();
   }
-  model.changed();
+  model.extended();
   bool used = model.choose_by_evidence(Block::temperature, added, score);
   if (used) {
     const VectorX with = problem.arm.precisions();
@@ -100,7 +100,7 @@ VERNIER_IMPL bool add_temperature(ModelSelection& model, double expansion) {
   model.blocks.back().used = false;
   model.blocks.back().precision = suppressing_precision;
   problem.arm = before;
-  model.changed();
+  model.extended();
   return false;
 }
 

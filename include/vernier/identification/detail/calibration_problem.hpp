@@ -95,7 +95,8 @@ class CalibrationProblem {
   /// The problem as rows; refers to this.
   VERNIER_API BlockSystem system() const;
   /// Its normal equations at the present values, with `prior`.
-  VERNIER_API NormalEquations normal_equations() const;
+  /// @param same_functions see `NormalEquations`; not with `prior`
+  VERNIER_API NormalEquations normal_equations(const NormalEquations* same_functions = nullptr) const;
   /// Evaluates blocks first .. first + count - 1: residuals and columns divided by the sensors' sigmas and weighted by
   /// the loss. Errors of joint readings are unknowns of each pose with a prior, eliminated here in closed form.
   VERNIER_API void operator()(Index first, Index count, RowBlock* out) const;

@@ -51,8 +51,8 @@ VERNIER_IMPL BlockSystem CalibrationProblem::system() const {
   return out;
 }
 
-VERNIER_IMPL NormalEquations CalibrationProblem::normal_equations() const {
-  NormalEquations out(system(), drift_priors(), executor);
+VERNIER_IMPL NormalEquations CalibrationProblem::normal_equations(const NormalEquations* same_functions) const {
+  NormalEquations out(system(), drift_priors(), executor, same_functions);
   if (prior) out.add(*prior, arm.steps());
   return out;
 }

@@ -238,8 +238,8 @@ bool plot_svg(const std::filesystem::path& path, const std::string& title, const
               const std::string& y_label, const std::vector<Series>& series, const FigureOptions& options) {
   FigureOptions page = options;
   std::string key;
-  if (series.size() > palette.size()) {  // too many for a legend below
-    page.height = std::max(page.height, 160 + 29 * static_cast<int>(series.size()));
+  if (series.size() > palette.size()) {  // too many for a legend below; in a lower page they would get two columns
+    page.height = std::max(page.height, 180 + 33 * static_cast<int>(series.size()));
     std::size_t longest = 0;
     for (const Series& one : series) longest = std::max(longest, one.name.size());
     page.width += 80 + 10 * static_cast<int>(longest);

@@ -5,6 +5,9 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "run_command.hpp"
 #include "temporary_folder.hpp"
@@ -195,6 +198,27 @@ TEST(Compare, RefusesWhatItDoesNotKnow) {
   std::ofstream(folder / "twice.json") << R"({"problems": [{}], "methods": ["elm"], "methods": ["gp"]})";
   refused("twice.json", 1, "key 'methods' is given twice");
   refused("--methods elm --results none.jsonl", 1, "none.jsonl, line 1: no result of a comparison");
+}
+
+// Ten curves: their legend stands beside the plot, in one column.
+TEST(Compare, LegendsOfManyCurvesLeaveTheDataAlone) {
+  const TemporaryFolder folder("compare");
+  std::string methods;
+  const std::vector<std::string> searches{"random", "pso",     "pso_clamped", "pso_constriction", "spso2011",
+                                          "ga",     "real_ga", "de",          "lshade",           "cmaes"};
+  for (const std::string& search : searches) methods += (methods.empty() ? "" : ",") + search + ":elm";
+  const CommandResult found =
+      run(folder, "--methods " + methods + " --poses 20 --seeds 1 --evaluations 100 --nodes 5 --threads 1");
+  ASSERT_EQ(found.exit_code, 0) << found.errors;
+  const std::string figure = read_file(folder / "compare_out/convergence_abb_irb120_elm.svg");
+  std::set<std::string> places;  // of the texts' left ends
+  for (const std::string& search : searches) {
+    const std::size_t name = figure.find("<text>" + search + ":elm</text>");
+    ASSERT_NE(name, std::string::npos) << search;
+    const std::size_t at = figure.rfind("translate(", name) + 10;
+    places.insert(figure.substr(at, figure.find(',', at) - at));
+  }
+  EXPECT_EQ(places.size(), 1u);
 }
 
 // An arm of which no region is known is simulated within its limits; columns of the table never touch.

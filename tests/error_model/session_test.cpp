@@ -263,6 +263,38 @@ TEST(ModelSelectionWhiteBox, ConvergedWhereEverySolutionDid) {
   EXPECT_FALSE(model.converged);
 }
 
+// Sums of harmonics that stay are copied: the equations are those that are computed anew.
+TEST(ModelSelectionWhiteBox, ExtendedEquationsAreThoseOfNow) {
+  const JointRows<6> joints = samples(20, 8);
+  const Dataset<6> data = visited(arm_with_hysteresis(1e-3), joints, rows_before(joints), 8, still);
+  const ErrorModelOptions options;
+  detail::CalibrationProblem problem(ArmParameterisation({ArmGeometry(nominal)}, {{11, -1, 1e-3, 1}}),
+                                     {vernier_test::set_of(data, squared)}, Loss::squared);
+  detail::ModelSelection model(std::move(problem), options, detail::spectra_of(options, 6),
+                               detail::ChainTable(nominal.model().view()));
+  const auto expect_those_of_now = [&] {
+    const MatrixX found = model.linearised().normal.matrix;
+    EXPECT_EQ(RealMatrix(found), RealMatrix(model.problem.normal_equations().matrix));
+  };
+  JointTerms terms(6);
+  terms.transmission[2] = Fourier::up_to(3);
+  model.extend_terms(terms);
+  expect_those_of_now();
+  model.steps(1);  // to other values
+  expect_those_of_now();
+  terms.hysteresis = {0.02};  // beside the same harmonics
+  model.extend_terms(terms);
+  expect_those_of_now();
+  terms.transmission[2].orders = {1, 2, 4};  // as many others
+  model.extend_terms(terms);
+  expect_those_of_now();
+  model.problem.arm.move(VectorX::Constant(model.problem.arm.size(), 1e-3));
+  model.changed();
+  terms.gear_ratio = true;
+  model.extend_terms(terms);
+  expect_those_of_now();
+}
+
 TEST(Drift, OfAJointsZeroIsFollowed) {
   const Index n = 600;
   const JointRows<6> joints = samples(n, 1);

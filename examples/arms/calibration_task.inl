@@ -164,7 +164,7 @@ CalibrationOutcome calibrate_of<N>(const CalibrationTask& task, const vn::FitOpt
 
   const auto calibration = vn::calibrate(robot.arm, train, options);
   CalibrationOutcome out;
-  out.report = vn::evaluate(calibration, test, robot.limits, robot.controller);
+  out.report = evaluate_visits(calibration, test, robot.limits, robot.controller);
   const auto model_of = [&](std::size_t set) {
     const std::string& point = stations.points[set];
     const vn::RobotInfo<N> info{.name = robot.name,

@@ -2,13 +2,14 @@
 #pragma once
 
 /// @file
-/// Poses that are held out are visited by no row that is learned from.
+/// Poses that are held out are visited by no row that is learned from, and how well they are predicted.
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
 #include "vernier/calibration/calibration_failure.hpp"
+#include "vernier/calibration/evaluate.hpp"
 #include "vernier/data/same_pose.hpp"
 #include "vernier/data/split.hpp"
 
@@ -52,6 +53,24 @@ vernier::Index keep_poses_apart(std::vector<vernier::Split<N>>& stations, const 
     if (static_cast<vn::Index>(kept.size()) < stations[s].train.size())
       stations[s].train = stations[s].train.rows(kept);
   }
+  return out;
+}
+
+/// Errors of held-out rows. The rows that were learned from are visits, means of the readings of a pose, and so are
+/// those that the 95 % ellipsoids are to hold.
+template <class Chain>
+vernier::CalibrationReport evaluate_visits(const vernier::Calibration<Chain>& calibration,
+                                           const vernier::Measurements<Chain::dof>& held_out,
+                                           const vernier::JointLimits<Chain::dof>& limits,
+                                           const vernier::ControllerMap& controller) {
+  namespace vn = vernier;
+  vn::CalibrationReport out = vn::evaluate(calibration, held_out, limits, controller);
+  const auto types = calibration.errors.model().nominal().model().joint_types();
+  vn::Measurements<Chain::dof> visits;
+  for (std::size_t s = 0; s < held_out.poses().size(); ++s)
+    visits.add(vn::readings_joined(held_out.poses()[s], {.joint_types = types}), held_out.sets()[s].name);
+  if (visits.size() < held_out.size())
+    out.ellipsoid_coverage = vn::evaluate(calibration, visits, limits, controller).ellipsoid_coverage;
   return out;
 }
 

@@ -12,6 +12,7 @@
 #include "calibration_page.hpp"
 #include "dispatch.hpp"
 #include "file_name.hpp"
+#include "held_out.hpp"
 #include "instances.hpp"
 #include "known_parts.hpp"
 #include "report_page.hpp"
@@ -91,7 +92,7 @@ PoseCalibration calibrate_measured(const vn::RobotDescription& description, cons
   if (measured->covariance) calibration.errors.covariance = measured->covariance(calibration.errors);
   PoseCalibration out{.nominal = vn::ArmGeometry(robot.arm),
                       .identified = vn::ArmGeometry(calibration.geometry.model.identified()),
-                      .report = vn::evaluate(calibration, measured->test, robot.limits, robot.controller),
+                      .report = evaluate_visits(calibration, measured->test, robot.limits, robot.controller),
                       .held_out = measured->held_out,
                       .audits = std::move(audits)};
   out.error_of = [measured, o](const vn::RobotDescription& arm) { return held_out_error(arm, *measured, o); };

@@ -225,6 +225,23 @@ TEST(Calibrate, CorrectBringsTheActualArmWithinTheNoise) {
   EXPECT_EQ(report.at("corrected"), 60);
 }
 
+// The rows that are learned from are means of three readings, and so are those that the ellipsoids are to hold: of
+// single readings a quarter is outside. 0.885 is three deviations below 0.95.
+TEST(Calibrate, EllipsoidsHoldPosesOfThreeReadings) {
+  const TemporaryFolder folder("calibrate");
+  const JointRows<6> poses = abb_irb120_operating_region().sample(robots::abb_irb120().chain, 200, 5);
+  JointRows<6> joints(600, 6);
+  for (Index i = 0; i < 600; ++i) joints.row(i) = poses.row(i / 3);
+  write_dataset(folder / "readings.csv",
+                measure(actual_arm(), joints, {.position = 0.03e-3, .orientation = 0.05e-3}, 6));
+  const CommandResult found =
+      run(folder, "calibrate",
+          "--robot abb_irb120 --data readings.csv --test-fraction 0.5 --json report.json --out figures --threads 1");
+  ASSERT_EQ(found.exit_code, 0) << found.errors;
+  const Json json = Json::parse(read_file(folder / "report.json"));
+  EXPECT_GE(json.at("within_95_percent_ellipsoids").get<double>(), 0.885);
+}
+
 // A few new poses of the same arm, with the earlier calibration and without.
 TEST(Calibrate, StartsFromAnEarlierCalibration) {
   const TemporaryFolder& folder = calibration().folder;

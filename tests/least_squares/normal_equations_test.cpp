@@ -81,6 +81,11 @@ TEST(NormalEquations, TakeSumsOfTheSameFunctions) {
   for (Index c = 5; c < 15; ++c)
     for (Index r = 5; r < 15; ++r) doubled(r, c) *= 2;
   EXPECT_EQ(RealMatrix(with_known().matrix), doubled);
+  known.prior = MatrixX::Identity(13, 13);  // it would be counted twice
+  EXPECT_NE(complaint([&] { (void)with_known(); }).find("or a joint prior"), std::string::npos);
+  known = NormalEquations(RandomBlocks(3, 1).normal());
+  known.matrix = MatrixX::Identity(9, 9);  // of ten functions
+  EXPECT_NE(complaint([&] { (void)with_known(); }).find("fewer unknowns"), std::string::npos);
 }
 
 // A prior with correlations, as rows of its Cholesky factor would be.

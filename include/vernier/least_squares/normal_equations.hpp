@@ -53,6 +53,7 @@ struct NormalEquations {
   /// @param same_functions equations of the same blocks with the same factored unknowns and other dense ones: the sums
   ///                       of factored unknowns alone, nearly all of the work, are copied from them. Null for none;
   ///                       without a `JointPrior`
+  /// @throws std::invalid_argument where these have fewer unknowns, or such a prior
   /// @complexity O(blocks u^2 / 6) for u unknowns, memory O(u^2)
   VERNIER_API explicit NormalEquations(const BlockSystem& system, const std::vector<LocalPrior>& local_priors = {},
                                        ExecutorRef executor = {}, const NormalEquations* same_functions = nullptr);

@@ -121,6 +121,9 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
     begin.push_back(begin.back() + system.group_sizes[static_cast<std::size_t>(j)]);
     for (Index i = 0; i <= j; ++i) pairs.push_back({i, j});
   }
+  demand(same_functions == nullptr || (same_functions->matrix.rows() >= all - d && same_functions->prior.size() == 0),
+         "NormalEquations: same_functions have fewer unknowns, or a joint prior");
+  const Index summed = all > d && same_functions == nullptr ? static_cast<Index>(pairs.size()) : 0;
   for (Index first = 0; first < system.blocks; first += chunk) {
     const Index n = (std::min)(chunk, system.blocks - first);
     executor.for_ranges((n + detail::rows_at_a_time - 1) / detail::rows_at_a_time, [&](Index from, Index to) {
@@ -158,8 +161,7 @@ VERNIER_IMPL NormalEquations::NormalEquations(const BlockSystem& system, const s
       detail::add_transposed_product(VERNIER_LATER(matrix).block(0, at, d, h_j.cols()),
                                      VERNIER_LATER(mixed).block(0, j * d, n, d), h_j);
     }
-    executor.for_ranges(all > d && same_functions == nullptr ? static_cast<Index>(pairs.size()) : 0, [&](Index from,
-                                                                                                         Index to) {
+    executor.for_ranges(summed, [&](Index from, Index to) {
       for (Index pair = from; pair < to; ++pair) {
         const Index i = pairs[static_cast<std::size_t>(pair)][0], j = pairs[static_cast<std::size_t>(pair)][1];
         const auto h_i = functions(i), h_j = functions(j);

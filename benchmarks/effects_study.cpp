@@ -4,9 +4,19 @@
 //
 //   effects_study [ARMS [EFFECT [SIZE [POSES...]]]]
 //
-// EFFECT is none (the default), compliance, gears, coupling, harmonics or all; SIZE (1) multiplies its usual size. Each
-// of ARMS (20) UR10 and as many IRB 120 has other geometric errors. POSES are 60 120 300. The sensor's noise is 0.03 mm
-// and 0.05 mrad.
+// EFFECT is none (the default), compliance, gears, coupling, harmonics, ripple or all; SIZE (1) multiplies its usual
+// size. Three effects are none of the arm: tails (noise of Student's distribution with 3 degrees of freedom), sigma
+// (the stated standard deviations are SIZE times the true ones) and ordered (poses along a path). Each of ARMS (20)
+// UR10 and as many IRB 120 has other geometric errors. POSES are 60 120 300. The sensor's noise is 0.03 mm and 0.05
+// mrad. Columns:
+//
+//   false claims    arms with a claim of another effect
+//   found           arms with a claim of the effect that they have
+//   ratio           noise-free error of the deployed model, over that of the geometry
+//   intervals       95 % intervals of the effect's size that hold it, whether found or not, at arms where nothing else
+//                   was found
+//   size            that geometry and frames leave of the effect, median
+//   poses           that would find as much with 80 %, by the reports, median
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +27,8 @@
 #include <string>
 #include <vector>
 
+#include "vernier/core/rng.hpp"
+#include "vernier/core/so3.hpp"
 #include "vernier/error_model/fit_error_model.hpp"
 #include "vernier/evaluation/quantile.hpp"
 #include "vernier/identification/identify.hpp"
@@ -32,7 +44,7 @@ using vn::Index;
 namespace {
 
 struct Cell {
-  int arms = 0, with_false_claims = 0, truths = 0, covered = 0;
+  int arms = 0, with_false_claims = 0, found = 0, truths = 0, covered = 0;
   std::map<std::string, int> claims;
   std::vector<double> ratios;           // noise-free error of the deployed model to that of the geometry
   std::vector<double> decisive, sizes;  // poses that would decide; true sizes [mm]
@@ -45,24 +57,61 @@ vn::JointErrorSizes sizes_of(const std::string& effect, double size) {
   if (effect == "coupling") out.coupling = 1e-4 * size;
   if (effect == "compliance") out.compliance = 0.2e-3 * size;
   if (effect == "harmonics") out.harmonic = 0.02e-3 * size;
+  if (effect == "ripple") out.ripple = 0.05e-3 * size;
   if (effect == "all")
     out = {
         .gear_ratio = 1e-5 * size, .coupling = 1e-5 * size, .compliance = 0.05e-3 * size, .harmonic = 0.02e-3 * size};
   return out;
 }
 
+/// Whether the arm has an effect.
+bool errs(const std::string& effect) {
+  return effect != "none" && effect != "tails" && effect != "sigma" && effect != "ordered";
+}
+
 /// Whether a claim is of the effect that the arm has.
 bool is_of(vn::Block block, const std::string& effect) {
   if (effect == "all") return block != vn::Block::drift && block != vn::Block::approach && block != vn::Block::tilt;
   if (block == vn::Block::elastic || block == vn::Block::elastic_again) return effect == "compliance";
-  if (block == vn::Block::jointwise) return effect != "none" && effect != "compliance";
+  if (block == vn::Block::jointwise) return errs(effect) && effect != "compliance";
   return block == vn::Block::gears && (effect == "gears" || effect == "coupling");
 }
 
 /// Whether a block would have all of the effect, beside what is tested before it.
 bool alone(vn::Block block, const std::string& effect) {
-  return (block == vn::Block::elastic && effect == "compliance") || (block == vn::Block::gears && effect == "gears") ||
+  if (block == vn::Block::elastic_again && effect == "compliance") return true;
+  return (block == vn::Block::elastic && effect == "compliance") ||
+         (block == vn::Block::gears && (effect == "gears" || effect == "coupling")) ||
          (block == vn::Block::jointwise && effect == "harmonics");
+}
+
+/// Poses along a path through random ones, 15 from one to the next.
+vn::JointRows<6> along_path(const vn::JointLimits<6>& limits, Index poses, std::uint64_t seed) {
+  constexpr Index steps = 15;
+  const auto corners = vn::sample_joints(limits, poses / steps + 2, seed);
+  vn::JointRows<6> out(poses, 6);
+  for (Index i = 0; i < poses; ++i) {
+    const double share = static_cast<double>(i % steps) / steps;
+    out.row(i) = (1 - share) * corners.row(i / steps) + share * corners.row(i / steps + 1);
+  }
+  return out;
+}
+
+/// Measurements whose noise has long tails: normal, divided by the root of a third of a chi-square of 3 degrees of
+/// freedom.
+vn::Dataset<6> with_tails(const vn::Dataset<6>& exact, const vn::Dataset<6>& noisy, std::uint64_t seed) {
+  vn::Rng rng(seed);
+  vn::PointRows positions = exact.positions(), orientations = exact.orientations();
+  for (Index i = 0; i < exact.size(); ++i) {
+    const auto [a, b] = rng.normal_pair();
+    const double c = rng.normal_pair()[0], factor = 1 / std::sqrt((a * a + b * b + c * c) / 3);
+    positions.row(i) += factor * (noisy.positions().row(i) - positions.row(i));
+    const vn::Matrix3 from = vn::exp_so3(orientations.row(i).transpose());
+    const vn::Matrix3 to = vn::exp_so3(noisy.orientations().row(i).transpose());
+    const vn::Vector3 turn = factor * vn::log_so3(to * from.transpose());
+    orientations.row(i) = vn::log_so3(vn::exp_so3(turn) * from).transpose();
+  }
+  return {exact.joints(), positions, orientations};
 }
 
 double error_of(const auto& model, const auto& actual, const vn::JointRows<6>& joints) {
@@ -80,38 +129,49 @@ void run_arm(const vn::Robot<6>& robot, const std::string& effect, double size, 
   const auto chain = vn::with_geometric_errors(robot.chain, {}, seed);
   const vn::WithJointErrors<vn::DhChain<6>> actual(
       chain, vn::draw_joint_errors(robot.chain, sizes_of(effect, size), seed + 1));
-  const auto joints = vn::sample_joints(limits, poses, seed + 2);
+  const auto joints =
+      effect == "ordered" ? along_path(limits, poses, seed + 2) : vn::sample_joints(limits, poses, seed + 2);
   const auto fresh = vn::sample_joints(limits, 500, seed + 3);
   const vn::MeasurementNoise noise{.position = 0.03e-3, .orientation = 0.05e-3};
-  const vn::Measurements<6> measured(vn::measure(actual, joints, noise, seed + 4));
-  const auto geometry = vn::identify(robot.chain, measured, {}, {}, vn::own_solver);
-  const auto found = vn::fit_error_model(geometry, measured);
+  const vn::Dataset<6> exact_rows = vn::measure(actual, joints, {}, 0);
+  const vn::Dataset<6> noisy = vn::measure(actual, joints, noise, seed + 4);
+  const vn::Measurements<6> measured(effect == "tails" ? with_tails(exact_rows, noisy, seed + 5) : noisy);
+  vn::SensorModel sensors;
+  if (effect == "sigma") sensors = {.position_sigma = 0.03e-3 * size, .orientation_sigma = 0.05e-3 * size};
+  double size_mm = 0;  // what geometry and frames leave of the effect
+  vn::ErrorModelOptions options;
+  if (errs(effect)) {
+    const vn::Measurements<6> exact(exact_rows);
+    options.relevant_size = vn::identify(robot.chain, exact, {}, {}, vn::own_solver).rms_after;
+    size_mm = 1e3 * options.relevant_size;
+    cell.sizes.push_back(size_mm);
+  }
+  const auto geometry = vn::identify(robot.chain, measured, {}, sensors, vn::own_solver);
+  const auto found = vn::fit_error_model(geometry, measured, options, sensors);
   const double of_geometry = error_of(found.models(vn::Stage::geometry).front(), actual, fresh);
   ++cell.arms;
   cell.ratios.push_back(error_of(found.model(), actual, fresh) / of_geometry);
-  bool false_claim = false;
+  bool false_claim = false, its_own = false, stands_in = false;
   const bool again = std::any_of(found.blocks.begin(), found.blocks.end(),
                                  [](const vn::BlockChoice& block) { return block.block == vn::Block::elastic_again; });
   for (const vn::BlockChoice& block : found.blocks) {
-    if (again && block.block == vn::Block::elastic) continue;
     const vn::Existence& answer = block.existence;
-    if (answer.answer == vn::Answer::found) {
-      ++cell.claims[vn::traits_of(block.block).key];
-      false_claim = false_claim || !is_of(block.block, effect);
-    }
-    double truth = 0;  // what geometry and frames leave of the effect
-    const bool its_own = is_of(block.block, effect);
-    if (its_own) {
-      const vn::Measurements<6> exact(vn::measure(actual, joints, {}, 0));
-      truth = vn::identify(robot.chain, exact, {}, {}, vn::own_solver).rms_after;
-      cell.sizes.push_back(truth * 1e3);
-      if (answer.poses > 0) cell.decisive.push_back(static_cast<double>(answer.poses));
-    }
-    if (answer.answer == vn::Answer::untested || (its_own && !alone(block.block, effect))) continue;
-    ++cell.truths;
-    cell.covered += answer.interval[0] <= truth && truth <= answer.interval[1];
+    if (answer.answer != vn::Answer::found || (again && block.block == vn::Block::elastic)) continue;
+    ++cell.claims[vn::traits_of(block.block).key];
+    (is_of(block.block, effect) ? its_own : false_claim) = true;
+    stands_in = stands_in || !alone(block.block, effect);
   }
   cell.with_false_claims += false_claim;
+  cell.found += its_own;
+  if (stands_in) return;  // it leaves less of the effect
+  for (const vn::BlockChoice& block : found.blocks) {
+    const vn::Existence& answer = block.existence;
+    if (!alone(block.block, effect) || answer.answer == vn::Answer::untested) continue;
+    if (again && block.block == vn::Block::elastic) continue;
+    ++cell.truths;
+    cell.covered += 1e3 * answer.interval[0] <= size_mm && size_mm <= 1e3 * answer.interval[1];
+    if (answer.poses > 0) cell.decisive.push_back(static_cast<double>(answer.poses));
+  }
 }
 
 double median(const std::vector<double>& values) {
@@ -129,8 +189,8 @@ int main(int argc, char** argv) try {
   std::vector<Index> poses;
   for (int k = 4; k < argc; ++k) poses.push_back(std::atoi(argv[k]));
   if (poses.empty()) poses = {60, 120, 300};
-  std::printf("%-10s %5s | %5s %12s | %13s %13s | %9s | claims\n", "arm", "poses", "arms", "false claims",
-              "median ratio", "worst ratio", "intervals");
+  std::printf("%-10s %5s | %5s %12s %5s | %13s %13s | %9s %9s %6s | claims\n", "arm", "poses", "arms", "false claims",
+              "found", "median ratio", "worst ratio", "intervals", "size [mm]", "poses");
   for (const auto& [name, robot] :
        {std::pair{"UR10", vn::robots::ur10()}, std::pair{"IRB 120", vn::robots::abb_irb120()}})
     for (const Index n : poses) {
@@ -138,13 +198,11 @@ int main(int argc, char** argv) try {
       for (int arm = 0; arm < arms; ++arm)
         run_arm(robot, effect, size, n, 1000003 * static_cast<std::uint64_t>(n) + 10 * static_cast<std::uint64_t>(arm),
                 cell);
-      std::printf("%-10s %5ld | %5d %12d | %13.4f %13.4f | %7.1f %% |", name, static_cast<long>(n), cell.arms,
-                  cell.with_false_claims, median(cell.ratios),
-                  *std::max_element(cell.ratios.begin(), cell.ratios.end()),
-                  100.0 * cell.covered / std::max(1, cell.truths));
+      std::printf("%-10s %5ld | %5d %12d %5d | %13.4f %13.4f | %2d of %-3d %9.4f %6.0f |", name, static_cast<long>(n),
+                  cell.arms, cell.with_false_claims, cell.found, median(cell.ratios),
+                  *std::max_element(cell.ratios.begin(), cell.ratios.end()), cell.covered, cell.truths,
+                  median(cell.sizes), median(cell.decisive));
       for (const auto& [key, count] : cell.claims) std::printf(" %s %d", key.c_str(), count);
-      if (!cell.sizes.empty())
-        std::printf(" | size %.4f mm, decisive poses %.0f", median(cell.sizes), median(cell.decisive));
       std::printf("\n");
       std::fflush(stdout);
     }

@@ -149,9 +149,22 @@ class ErrorModelFit {
     }
     model_.size_by_evidence(link_unknowns(problem_.arm));
     model_.solve();
+    measure_without_deflection();
     if (!search || !harmonics_) return;
     tune(search);
     model_.solve();
+  }
+
+  /// Measures functions of joints once more where deflection stood in for a part of them and is gone.
+  VERNIER_LOCAL void measure_without_deflection() {
+    using Kind = JointTermBlock::Kind;
+    const auto used = [&](Block block) {
+      return std::any_of(model_.blocks.begin(), model_.blocks.end(),
+                         [&](const BlockChoice& one) { return one.block == block && one.used; });
+    };
+    if (!used(Block::elastic) || used(Block::elastic_again)) return;
+    model_.measure_again(Block::gears, model_.of_kinds({Kind::gear_ratio, Kind::coupling}));
+    model_.measure_again(Block::jointwise, model_.of_kinds({Kind::transmission}));
   }
 
   /// Hysteresis.

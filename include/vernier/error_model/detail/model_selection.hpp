@@ -5,6 +5,7 @@
 /// Which blocks of unknowns a calibration has: whether they exist by a score test, sizes of their priors by evidence,
 /// inclusion by left-out errors.
 
+#include <initializer_list>
 #include <optional>
 #include <vector>
 
@@ -91,8 +92,13 @@ class ModelSelection {
   /// where there are poses enough, or where evidence speaks clearly against the expected spectrum.
   VERNIER_API void learn_spectrum(int iterations);
 
+  /// Measures an effect that was found once more, beside the unknowns that there are now.
+  VERNIER_API void measure_again(Block block, const UnknownGroup& group);
+
+  /// Unknowns of some kinds of joint errors.
+  VERNIER_API UnknownGroup of_kinds(std::initializer_list<JointTermBlock::Kind> kinds) const;
   /// Unknowns of gravity compliance, and of that to payload.
-  VERNIER_API UnknownGroup gravity() const;
+  UnknownGroup gravity() const { return of_kinds({JointTermBlock::Kind::gravity, JointTermBlock::Kind::payload}); }
   /// Unknowns of the transmissions, of orders first .. last.
   VERNIER_API UnknownGroup harmonics(int first, int last) const;
 

@@ -150,11 +150,10 @@ VERNIER_IMPL UnknownGroup ModelSelection::harmonics(int first, int last) const {
   return out;
 }
 
-VERNIER_IMPL UnknownGroup ModelSelection::gravity() const {
+VERNIER_IMPL UnknownGroup ModelSelection::of_kinds(std::initializer_list<JointTermBlock::Kind> kinds) const {
   UnknownGroup out;
-  using Kind = JointTermBlock::Kind;
   for (const JointTermBlock& block : problem.arm.terms().blocks())
-    if (block.kind == Kind::gravity || block.kind == Kind::payload)
+    if (std::find(kinds.begin(), kinds.end(), block.kind) != kinds.end())
       for (const Index k : unknowns(block.begin, block.count)) out.push_back(k);
   return out;
 }
@@ -166,8 +165,6 @@ VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest s
   const double sigma = problem.set_of(0).sigma().length;
   const double relevance =
       options_.relevant_size > 0 ? options_.relevant_size : (std::max)(0.1 * without.mean(), sigma);
-  if (score.p <= level)  // what the effect adds to the residuals is no noise
-    score.noise *= (std::min)(1.0, with.squaredNorm() / without.squaredNorm());
   BlockChoice out{block,
                   without.mean(),
                   with.mean(),
@@ -193,6 +190,19 @@ VERNIER_IMPL bool ModelSelection::choose_by_evidence(Block block, const UnknownG
   const bool used = blocks.back().used;
   problem.arm.set_precisions(used ? sized : suppressed);
   return used;
+}
+
+VERNIER_IMPL void ModelSelection::measure_again(Block block, const UnknownGroup& group) {
+  const auto choice = std::find_if(blocks.begin(), blocks.end(),
+                                   [&](const BlockChoice& one) { return one.block == block && one.used; });
+  if (choice == blocks.end()) return;
+  const Linearised& at = linearised();
+  const VectorX precisions = problem.arm.precisions();
+  const ScoreTest score = score_test(at.system, at.normal, precisions, at.steps, group, clusters_, at.local_steps);
+  constexpr double known = 1;  // level at which an effect is found in any case
+  const Existence now = existence(score, known, choice->existence.relevance, problem.num_validation_poses());
+  choice->existence.size = now.size;
+  choice->existence.interval = now.interval;
 }
 
 VERNIER_IMPL void ModelSelection::size_by_evidence(const UnknownGroup& group) {

@@ -46,9 +46,10 @@ auto calibrate_with_progress(const support::Program& program, const vn::RobotDes
     if (!searching) searching.emplace("searching", total);
     searching->update(++generations);
   };
-  const auto step = [&](const vn::Progress& progress) {
-    if (fitting) fitting->reach(support::share_of_fit(progress.generation));
+  o.reached = [&](double share) {
+    if (fitting) fitting->reach(share);
   };
+  const auto step = [&](const vn::Progress& progress) { o.reached(support::share_of_fit(progress.generation)); };
   o.calibrate.errors.observer = step;
   const vn::ThreadExecutor executor(program.common().threads);
   auto found =

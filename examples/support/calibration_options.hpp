@@ -4,6 +4,7 @@
 /// @file
 /// The command line of `calibrate`.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,7 @@ struct CalibrationOptions {
   std::string model;                         ///< that model
   std::string free;                          ///< what may move then
   vernier::CalibrateOptions calibrate{};     ///< of the calibration itself
+  std::function<void(double)> reached = [](double) {};  ///< told the share of the work that is done, up to a search
 };
 
 /// Reads the command line of `calibrate` and refuses options that do not belong together.

@@ -170,10 +170,12 @@ void draw_residuals(const std::filesystem::path& path, const vn::CameraReport& r
 template <int N>
 vn::CameraReport calibrate_arm(const CalibrationOptions& o, const vn::RobotDescription& description,
                                const vn::Board& board, const vn::CornerViews& views, const vn::CsvFormat& format,
-                               const vn::CameraOptions& options, std::vector<SeenRange>& ranges) {
+                               vn::CameraOptions options, std::vector<SeenRange>& ranges) {
   const vn::DescribedRobot<N> robot = description.arm<N>();
   const vn::ImageRows rows = vn::read_image_joints(o.data.front(), N, description.joint_types(), format);
   Working working("identifying arm and camera");
+  const auto watch = [&](const vn::Progress& progress) { working.reach(share_of_images(progress.generation)); };
+  options.observer = watch;
   const auto found = vn::calibrate_by_camera(robot.arm, board, views, rows, options);
   working.finish();
   ranges = seen_ranges(robot, rows, found);
@@ -313,7 +315,11 @@ int calibrate_by_camera(Program& program, const CalibrationOptions& o) {
   std::vector<SeenRange> ranges;
   std::string name = "poses of the flange";
   if (!o.flange_poses.empty()) {
-    report = vn::calibrate_hand_eye(in.board, in.views, vn::read_flange_poses(o.flange_poses, in.format), in.options);
+    const vn::ImageRows rows = vn::read_flange_poses(o.flange_poses, in.format);
+    Working working("finding the camera");
+    const auto watch = [&](const vn::Progress& progress) { working.reach(share_of_images(progress.generation)); };
+    in.options.observer = watch;
+    report = vn::calibrate_hand_eye(in.board, in.views, rows, in.options);
   } else {
     const vn::RobotDescription robot = choose_robot(o.robot);
     name = robot.name;

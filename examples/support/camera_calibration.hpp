@@ -34,6 +34,11 @@ struct CameraInputs {
 /// @throws vernier::DataError on a malformed file
 CameraInputs read_camera_inputs(const CalibrationOptions& options);
 
+/// The share of the time of a calibration by cameras that has passed after some of its steps.
+inline double share_of_images(vernier::Index steps) {
+  return static_cast<double>(steps) / static_cast<double>(vernier::camera_steps);
+}
+
 /// What a saved model says of the images.
 vernier::CameraSetup setup_of(const vernier::CameraReport& report);
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "simulated_views.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
@@ -84,6 +85,26 @@ TEST_P(HandEyeByCamera, ToleratesWrongCorners) {
 }
 
 INSTANTIATE_TEST_SUITE_P(BothMounts, HandEyeByCamera, ::testing::Bool());
+
+TEST(HandEyeByCameras, TellHowFarTheyAre) {
+  ViewSetup setup;
+  setup.board = {.rows = 6, .columns = 7, .square = 0.03, .scale_sigma = 1e-4};
+  setup.places = 1;
+  for (const int images : {8, 22}) {  // of few, each is left out and everything decided again
+    setup.images = images;
+    const SimulatedViews simulated = exact_arm(setup, 7);
+    std::vector<vn::Index> steps;
+    const auto watch = [&](const vn::Progress& progress) { steps.push_back(progress.generation); };
+    vn::calibrate_hand_eye(setup.board, simulated.views, simulated.rows,
+                           {.cameras = {setup.camera}, .observer = watch});
+    EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end()));
+    EXPECT_GT(steps.size(), 20U);
+    EXPECT_LT(steps.front(), vn::camera_steps / 10);
+    EXPECT_EQ(steps.back(), vn::camera_steps);
+    const auto before_the_last = steps.rbegin()[1];
+    EXPECT_LT(before_the_last, vn::camera_steps);
+  }
+}
 
 TEST(HandEyeByCameras, StateTrueStandardDeviationsForAnInexactArm) {
   ViewSetup setup;

@@ -11,6 +11,7 @@
 
 #include "vernier/calibration/camera_report.hpp"
 #include "vernier/camera/corner_views.hpp"
+#include "vernier/core/fit_options.hpp"
 #include "vernier/core/so3.hpp"
 #include "vernier/identification/calibrated.hpp"
 #include "vernier/identification/options.hpp"
@@ -26,6 +27,9 @@ struct HeldCameras {
   double board_scale = 1;         ///< as in `CameraReport`
   Vector3 board_bend{0, 0, 0};    ///< likewise [m]
 };
+
+/// Parts of the work of a calibration by cameras, of which an observer is told.
+inline constexpr Index camera_steps = 100;
 
 /// Options of a calibration by cameras.
 struct CameraOptions {
@@ -46,6 +50,9 @@ struct CameraOptions {
   bool left_out = true;        ///< whether images are left out in turn to report errors at them
   Loss loss = Loss::huber;     ///< how residuals are weighted; huber tolerates wrong corners
   IdentifyOptions geometry{};  ///< which parameters of the arm are estimated, with which priors
+  /// Who watches; must outlive the call. Told after each fit how many of `camera_steps` are done
+  /// (`Progress::generation`), as far as that can be foreseen. It cannot stop the calibration.
+  ObserverRef observer{};
 };
 
 namespace detail {

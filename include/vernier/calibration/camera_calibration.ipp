@@ -108,6 +108,10 @@ class CameraRun {
   VERNIER_LOCAL void report_images(const CameraProblem& problem, CameraReport& out) const;
   VERNIER_LOCAL void report_left_out(const CameraProblem& of_all, CameraReport& out) const;
   VERNIER_LOCAL void report_unknowns(const CameraProblem& problem, CameraReport& out) const;
+  /// Work of `choose` with some groups of views [fits].
+  VERNIER_LOCAL double work_of_choice(double groups) const;
+  /// Tells the observer that some more fits are done.
+  VERNIER_LOCAL void did(double fits) const;
 
   const std::optional<ArmGeometry>& nominal_;
   const Board& board_;
@@ -119,7 +123,12 @@ class CameraRun {
   std::vector<PlacedView> placed_{};
   std::optional<ArmGeometry> chain_{};  // without frames
   std::vector<Isometry3> flanges_{};    // of the rows, nominal
+  double work_ = 1;                     // in all [fits]
+  mutable double done_ = 0;             // of it [fits]
 };
+
+/// Work of a group that is left out to decide on unknowns, beside that of a fit from its start.
+inline constexpr double work_of_group = 0.5;
 
 VERNIER_LOCAL ViewNumbers all_numbers(std::size_t size) {
   ViewNumbers out(size);
@@ -482,6 +491,7 @@ VERNIER_IMPL VectorX CameraRun::left_out_medians(const ViewNumbers& numbers, con
   for (const ViewNumbers& fold : folds(numbers)) {
     CameraProblem problem = started(without(numbers, fold), of_all);
     problem.solve(30);
+    did(work_of_group);
     for (const std::size_t k : fold) {
       const VectorX errors = problem.board_errors(placed_[k], problem.pose_of(placed_[k]));
       found[k] = median_norm_of({errors.begin(), errors.end()});
@@ -551,11 +561,13 @@ VERNIER_IMPL CameraFreedom CameraRun::choose(const ViewNumbers& numbers, std::ve
   CameraFreedom free = first_freedom();
   if (!options_.choose) return free;
   CameraProblem now = fit(numbers, free).problem;
+  did(1);
   VectorX errors = left_out_medians(numbers, now);
   for (const NamedBlock& block : camera_blocks) {
     if (!adds(free, block)) continue;
     CameraProblem larger = now;
     settle(larger, with(free, block));
+    did(1);
     const VectorX with_block = left_out_medians(numbers, larger);
     CameraBlock tried{block.name, errors.mean(), with_block.mean()};
     constexpr double relevant = 0.1;  // share of the error that an effect is which matters; they add in quadrature
@@ -635,6 +647,7 @@ VERNIER_IMPL void CameraRun::report_left_out(const CameraProblem& of_all, Camera
     // a tenth of many images moves nothing far: fits without it start from that of all
     const CameraProblem problem =
         out.choices_repeated ? fit(kept, choose(kept, nullptr)).problem : nearby(kept, of_all);
+    did(1);
     for (const std::size_t k : fold) {
       const VectorX errors = problem.board_errors(placed_[k], problem.pose_of(placed_[k]));
       out.images[k].left_out_mean = errors.mean();
@@ -743,6 +756,18 @@ VERNIER_IMPL void CameraRun::report_unknowns(const CameraProblem& problem, Camer
   out.scale_effect = out.board_scale_std * reach;
 }
 
+VERNIER_IMPL double CameraRun::work_of_choice(double groups) const {
+  if (!options_.choose) return 0;
+  double tries = 1;
+  for (const NamedBlock& block : camera_blocks) tries += adds(first_freedom(), block) ? 1 : 0;
+  return tries * (1 + work_of_group * groups);
+}
+
+VERNIER_IMPL void CameraRun::did(double fits) const {
+  done_ += fits;
+  options_.observer({static_cast<Index>(std::floor(camera_steps * (std::min)(done_ / work_, 1.0))), 0, 0});
+}
+
 VERNIER_IMPL CameraReport CameraRun::run() {
   CameraReport out;
   out.mount = options_.mount;
@@ -752,8 +777,13 @@ VERNIER_IMPL CameraReport CameraRun::run() {
   out.without_row = matched_.without_row;
   out.without_corners = matched_.without_corners;
   const ViewNumbers all = all_numbers(placed_.size());
+  const auto groups = static_cast<double>(folds(all).size());
+  work_ = work_of_choice(groups) + 1;
+  if (options_.left_out)
+    work_ += groups * (1 + (groups < static_cast<double>(placed_.size()) ? 0 : work_of_choice(groups - 1)));
   const CameraFreedom free = choose(all, &out.blocks);
   const Fit best = options_.held ? fit_held(all, free) : fit(all, free);
+  did(1);
   out.ambiguous = best.ambiguous;
   out.pixel_sigma = best.problem.scatter().pixels;
   report_unknowns(best.problem, out);

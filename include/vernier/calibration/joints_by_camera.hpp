@@ -103,6 +103,8 @@ VERNIER_API ImageRows with_joint_errors(ImageRows rows, const JointErrors& error
 /// @param fit_joints a fit to poses: `JointFit(const Measurements<N>&)`. Tilts of joint frames are no errors of joint
 ///                   values, so it must find none; called twice, and in each round if it has an earlier calibration as
 ///                   its prior
+/// @param options    where the camera is, and what is known of it; the observer is told of the calibration by camera
+///                   that decides, the longest one
 /// @param most       rounds
 /// @throws CalibrationFailure and DataError as `calibrate_by_camera` does
 /// @cite Golub and Pereyra 1973
@@ -113,6 +115,7 @@ JointsByCamera<ChainOf<Arm>> calibrate_joints_by_camera(const Arm& arm, const Bo
   constexpr int N = ChainOf<Arm>::dof;
   CameraOptions rough = options;  // errors of the joints hide what left-out images would decide on
   rough.choose = rough.left_out = false;
+  rough.observer = {};
   ImageRows effective = rows;
   const auto with_errors = [&](const CameraOptions& now) {
     return calibrate_by_camera(arm, board, views, effective, now);

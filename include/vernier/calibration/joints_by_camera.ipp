@@ -67,6 +67,7 @@ namespace detail {
 
 VERNIER_IMPL CameraOptions decided(CameraOptions options, const CameraReport& first) {
   options.choose = options.left_out = false;
+  options.observer = {};
   for (std::size_t k = 0; k < Camera::names.size(); ++k)
     for (const VectorX& std : first.camera_std)
       if (std(static_cast<Index>(k)) > 0 &&

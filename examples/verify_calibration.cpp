@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <string>
 
+#include "calibration_instances.hpp"
 #include "cli.hpp"
 #include "console.hpp"
 #include "csv_options.hpp"
-#include "instances.hpp"
+#include "data_instances.hpp"
 #include "json_file.hpp"
+#include "model_instances.hpp"
 #include "progress.hpp"
 #include "report_page.hpp"
 #include "sensor_options.hpp"

@@ -8,8 +8,9 @@
 #include <utility>
 
 #include "calibrated_arm.hpp"
+#include "calibration_instances.hpp"
 #include "controller_rows.hpp"
-#include "instances.hpp"
+#include "model_instances.hpp"
 #include "with_branches.hpp"
 
 namespace support {

@@ -5,10 +5,12 @@
 #include <string>
 #include <utility>
 
+#include "calibration_instances.hpp"
 #include "calibration_task.hpp"
+#include "data_instances.hpp"
 #include "held_out.hpp"
-#include "instances.hpp"
 #include "known_parts.hpp"
+#include "model_instances.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/calibration/data_audit.hpp"
 #include "vernier/io/html_report.hpp"

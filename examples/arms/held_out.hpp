@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "data_instances.hpp"
 #include "vernier/calibration/calibration_failure.hpp"
 #include "vernier/calibration/evaluate.hpp"
 #include "vernier/data/same_pose.hpp"

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "data_instances.hpp"
 #include "vernier/core/check.hpp"
 #include "vernier/core/controller_map.hpp"
 #include "vernier/data/contacts.hpp"

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "data_instances.hpp"
 #include "dispatch.hpp"
 #include "held_out.hpp"
 #include "held_out_rows.hpp"

@@ -17,6 +17,7 @@
 #include "figures.hpp"
 #include "file_name.hpp"
 #include "json_file.hpp"
+#include "model_instances.hpp"
 #include "progress.hpp"
 #include "robot_choice.hpp"
 #include "vernier/calibration/camera_calibration.hpp"

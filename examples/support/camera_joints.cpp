@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "calibration_instances.hpp"
 #include "camera_calibration.hpp"
 #include "dispatch.hpp"
-#include "instances.hpp"
 #include "saved_model.hpp"
 #include "vernier/calibration/joints_by_camera.hpp"
 

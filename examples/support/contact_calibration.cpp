@@ -11,6 +11,7 @@
 #include "file_name.hpp"
 #include "held_out_rows.hpp"
 #include "json_file.hpp"
+#include "model_instances.hpp"
 #include "parameter_table.hpp"
 #include "pose_calibration.hpp"
 #include "progress.hpp"

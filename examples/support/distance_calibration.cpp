@@ -8,11 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "calibration_instances.hpp"
 #include "dispatch.hpp"
 #include "file_name.hpp"
 #include "held_out_rows.hpp"
-#include "instances.hpp"
 #include "json_file.hpp"
+#include "model_instances.hpp"
 #include "parameter_table.hpp"
 #include "pose_calibration.hpp"
 #include "progress.hpp"

@@ -9,12 +9,13 @@
 #include <optional>
 
 #include "calibration_data.hpp"
+#include "calibration_instances.hpp"
 #include "calibration_page.hpp"
 #include "dispatch.hpp"
 #include "file_name.hpp"
 #include "held_out.hpp"
-#include "instances.hpp"
 #include "known_parts.hpp"
+#include "model_instances.hpp"
 #include "report_page.hpp"
 #include "saved_model.hpp"
 #include "vernier/io/model_file.hpp"

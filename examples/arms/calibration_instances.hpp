@@ -2,16 +2,16 @@
 #pragma once
 
 /// @file
-/// The functions that take longest to compile, as a list: `instances.hpp` declares their instances, the library
-/// `vernier_instances` defines them.
+/// Calibrations, for all numbers of joints: declared here, and compiled once, in the library `vernier_instances`.
 
-#include "model_instances.hpp"
+#include "dispatch.hpp"
 #include "vernier/calibration/calibrate.hpp"
 #include "vernier/calibration/evaluate.hpp"
 #include "vernier/calibration/verify_calibration.hpp"
+#include "vernier/io/identified_robot.hpp"
 
-/// The functions, as instances that are declared (`extern template`) or defined (`template`).
-#define VERNIER_INSTANCES(keyword, N)                                                                                 \
+/// These functions, as instances that are declared (`extern template`) or defined (`template`).
+#define VERNIER_CALIBRATION_INSTANCES(keyword, N)                                                                     \
   keyword Calibration<DhChain<N>> calibrate<Framed<DhChain<N>>>(const Framed<DhChain<N>>&, const Measurements<N>&,    \
                                                                 const CalibrateOptions&);                             \
   keyword CalibrationReport evaluate<DhChain<N>>(const Calibration<DhChain<N>>&, const Measurements<N>&,              \
@@ -19,4 +19,13 @@
   keyword VerificationReport verify_calibration<DhChain<N>>(const ErrorModel<DhChain<N>>&, const ErrorModelEstimate&, \
                                                             const Measurements<N>&, const VerifyOptions&,             \
                                                             const PointRows&);                                        \
-  VERNIER_MODEL_INSTANCES(keyword, N)
+  keyword CalibratedRobot<N> calibrated_robot<N, StandardDh>(const Calibration<DhChain<N>>&, const RobotInfo<N>&,     \
+                                                             std::size_t);
+
+namespace vernier {
+
+#define VERNIER_DECLARE(N) VERNIER_CALIBRATION_INSTANCES(extern template, N)
+VERNIER_FOR_ALL_DOF(VERNIER_DECLARE)
+#undef VERNIER_DECLARE
+
+}  // namespace vernier

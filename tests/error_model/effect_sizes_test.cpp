@@ -22,17 +22,20 @@ struct SimulatedArm {
   double size = 0;  // what geometry and frames leave of the joint errors [m]
 };
 
-/// An arm with errors of links and of joints, fitted to 60 poses.
-SimulatedArm fitted(const Robot<6>& robot, const JointErrorSizes& sizes, const ErrorModelOptions& options,
-                    std::uint64_t seed) {
+/// An arm with errors of links and of joints, fitted to some poses.
+/// @param options an effect as large as that of the arm matters, whatever they say
+SimulatedArm fitted(const Robot<6>& robot, const JointErrorSizes& sizes, ErrorModelOptions options, std::uint64_t seed,
+                    Index poses = 60) {
   const JointLimits<6> limits{robot.limits.lower.cwiseMax(-3), robot.limits.upper.cwiseMin(3)};
   const WithJointErrors<Chain> actual(with_geometric_errors(robot.chain, {}, seed),
                                       draw_joint_errors(robot.chain, sizes, seed + 1));
-  const auto joints = sample_joints(limits, 60, seed + 2);
+  const auto joints = sample_joints(limits, poses, seed + 2);
   const Measurements<6> exact(measure(actual, joints)),
       measured(measure(actual, joints, {.position = 0.03e-3, .orientation = 0.05e-3}, seed + 3));
   const auto geometry = [&](const Measurements<6>& of) { return identify(robot.chain, of, {}, {}, own_solver); };
-  return {fit_error_model(geometry(measured), measured, options), geometry(exact).rms_after};
+  const double size = geometry(exact).rms_after;
+  options.relevant_size = size;
+  return {fit_error_model(geometry(measured), measured, options), size};
 }
 
 const BlockChoice* choice_of(const FittedErrorModel<Chain>& found, Block block) {
@@ -41,14 +44,15 @@ const BlockChoice* choice_of(const FittedErrorModel<Chain>& found, Block block) 
   return at == found.blocks.end() ? nullptr : &*at;
 }
 
+const ErrorModelOptions compliance_alone{
+    .gear_ratio = false, .coupling = false, .harmonics = 0, .hysteresis = false, .tilt = false, .drift = false};
+
 const JointErrorSizes no_errors{.gear_ratio = 0, .coupling = 0, .compliance = 0, .harmonic = 0};
 
 // Of 20 intervals of 95 %, 16 or more hold the size with a probability of 99.7 %.
 TEST(EffectSizes, IntervalsOfADeflectionHoldIt) {
   JointErrorSizes sizes = no_errors;
   sizes.compliance = 0.1e-3;
-  const ErrorModelOptions compliance_alone{
-      .gear_ratio = false, .coupling = false, .harmonics = 0, .hysteresis = false, .tilt = false, .drift = false};
   int held = 0;
   for (std::uint64_t arm = 0; arm < 20; ++arm) {
     const SimulatedArm one = fitted(robots::ur10(), sizes, compliance_alone, 10 * arm);
@@ -61,12 +65,33 @@ TEST(EffectSizes, IntervalsOfADeflectionHoldIt) {
   EXPECT_GE(held, 16);
 }
 
+// A number of poses that would decide finds an effect of that size with 80 %: on 17 to 29 of 30 arms in 99.6 % of
+// cases.
+TEST(EffectSizes, AreFoundWithTheStatedNumberOfPoses) {
+  JointErrorSizes sizes = no_errors;
+  sizes.compliance = 4e-6;
+  int arms = 0, found = 0;
+  for (std::uint64_t seed = 0; arms < 30; seed += 10) {
+    ASSERT_LT(seed, 1000U);
+    const BlockChoice* before = choice_of(fitted(robots::ur10(), sizes, compliance_alone, seed).found, Block::elastic);
+    ASSERT_NE(before, nullptr);
+    const Index poses = before->existence.poses;
+    if (before->existence.answer == Answer::found) continue;
+    ++arms;
+    EXPECT_LT(poses, 1000) << "seed " << seed;  // what is suppressed as no evidence speaks for it would need as many
+    const SimulatedArm then = fitted(robots::ur10(), sizes, compliance_alone, seed, poses);
+    found += choice_of(then.found, Block::elastic)->existence.answer == Answer::found;
+  }
+  EXPECT_GE(found, 17);
+  EXPECT_LE(found, 29);
+}
+
 // Deflection is tested first, and takes a part of what gears do. Where it is gone in the end, gears have all of it.
 TEST(EffectSizes, OfGearsHaveWhatADeflectionStoodInFor) {
   JointErrorSizes sizes = no_errors;
   sizes.gear_ratio = 1e-4;
   int stood_in = 0;
-  for (std::uint64_t arm = 0; arm < 6; ++arm) {
+  for (std::uint64_t arm = 0; arm < 4; ++arm) {
     const SimulatedArm one = fitted(robots::abb_irb120(), sizes, {.drift = false}, 10 * arm);
     const BlockChoice *elastic = choice_of(one.found, Block::elastic),
                       *again = choice_of(one.found, Block::elastic_again), *gears = choice_of(one.found, Block::gears);

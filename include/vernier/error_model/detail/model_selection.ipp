@@ -165,12 +165,15 @@ VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest s
   const double sigma = problem.set_of(0).sigma().length;
   const double relevance =
       options_.relevant_size > 0 ? options_.relevant_size : (std::max)(0.1 * without.mean(), sigma);
-  BlockChoice out{block,
-                  without.mean(),
-                  with.mean(),
-                  false,
-                  suppressing_precision,
-                  existence(score, precision < nothing ? level : 0, relevance, problem.num_validation_poses())};
+  const Index poses = problem.num_validation_poses();
+  BlockChoice out{block, without.mean(), with.mean(), false, suppressing_precision, {}};
+  out.existence = existence(score, level, relevance, poses);
+  if (out.existence.answer == Answer::found && !(precision < nothing)) {
+    constexpr double never = 0;  // is it found; the number of poses that would decide stays
+    const Index decisive = out.existence.poses;
+    out.existence = existence(score, never, relevance, poses);
+    out.existence.poses = decisive;
+  }
   out.used = out.existence.answer == Answer::found && !predicts_worse(with, without);
   if (out.used) out.precision = precision;
   return out;

@@ -103,6 +103,8 @@ class ModelSelection {
   VERNIER_API UnknownGroup harmonics(int first, int last) const;
 
  private:
+  VERNIER_API ScoreTest test(Block block, const UnknownGroup& group, const VectorX& sized,
+                             const FactorisedEquations& with, const FactorisedEquations& without) const;
   VERNIER_API UnknownGroup unknowns(Index first, Index count) const;
 
   const ErrorModelOptions& options_;

@@ -179,6 +179,26 @@ VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest s
   return out;
 }
 
+/// Priors pull low orders of harmonics towards zero. If these are large, that leaves residuals that look like gears or
+/// tilt. So they have no priors here. Among many poses the priors pull little. Every arm bends, so deflection need not
+/// be told from such functions.
+VERNIER_IMPL ScoreTest ModelSelection::test(Block block, const UnknownGroup& group, const VectorX& sized,
+                                            const FactorisedEquations& with, const FactorisedEquations& without) const {
+  const Linearised& at = linearised();
+  VectorX precisions = sized;
+  constexpr int low = 3;
+  constexpr double none = 1e-6;
+  bool any = false;
+  for (const Index k : harmonics(1, low))
+    if (std::find(group.begin(), group.end(), k) == group.end() && precisions(k) < suppressing_precision) {
+      precisions(k) = none;
+      any = true;
+    }
+  if (!any || block == Block::elastic_again || problem.num_validation_poses() >= many_poses)
+    return score_test(at.system, with, without, sized, at.steps, group, clusters_);
+  return score_test(at.system, at.normal, precisions, at.steps, group, clusters_, at.local_steps);
+}
+
 VERNIER_IMPL bool ModelSelection::choose_by_evidence(Block block, const UnknownGroup& group,
                                                      std::optional<ScoreTest> score) {
   const Linearised& at = linearised();
@@ -187,7 +207,7 @@ VERNIER_IMPL bool ModelSelection::choose_by_evidence(Block block, const UnknownG
   VectorX suppressed = sized;
   for (const Index k : group) suppressed(k) = suppressing_precision;
   const FactorisedEquations with(at.normal, sized, at.steps, at.local_steps), without = with.with(suppressed, at.steps);
-  if (!score) score = score_test(at.system, with, without, sized, at.steps, group, clusters_);
+  if (!score) score = test(block, group, sized, with, without);
   blocks.push_back(choice_between(block, *score, error_norms(left_out(at, with)), error_norms(left_out(at, without)),
                                   sized(group.front())));
   const bool used = blocks.back().used;

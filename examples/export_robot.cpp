@@ -77,8 +77,15 @@ struct Calibrated {
   Outcome outcome;  ///< without files
 };
 
-Calibrated by_poses(const Settings& o, const vn::RobotDescription& robot, const vn::FitOptions& fit) {
-  support::PoseCalibration found = support::calibrate_from_poses(robot, calibration_options(o, robot), fit);
+Calibrated by_poses(const Settings& o, const vn::RobotDescription& robot, const vn::FitOptions& fit,
+                    support::Working& working) {
+  constexpr double of_errors = 0.75;  // share of the time that the error model takes; the rest is for the remainder
+  const auto watch = [&](const vn::Progress& progress) {
+    working.reach(of_errors * support::share_of_fit(progress.generation));
+  };
+  support::CalibrationOptions options = calibration_options(o, robot);
+  options.calibrate.errors.observer = watch;
+  support::PoseCalibration found = support::calibrate_from_poses(robot, options, fit);
   const vn::CalibrationReport& report = found.report;
   return {found.nominal,
           found.identified,
@@ -109,8 +116,8 @@ Calibrated by_contacts(const Settings& o, const vn::RobotDescription& robot, con
 }
 
 Outcome export_arm(const Settings& o, const vn::RobotDescription& robot, const std::optional<vn::UrdfChain>& chain,
-                   const vn::FitOptions& fit) {
-  const Calibrated calibration = o.contacts.empty() ? by_poses(o, robot, fit) : by_contacts(o, robot, fit);
+                   const vn::FitOptions& fit, support::Working& working) {
+  const Calibrated calibration = o.contacts.empty() ? by_poses(o, robot, fit, working) : by_contacts(o, robot, fit);
   Outcome out = calibration.outcome;
   const vn::ArmGeometry &nominal = calibration.nominal, &identified = calibration.identified;
   const vn::ArmGeometry geometry = identified.with_frames(o.with_base ? identified.base() : nominal.base(),
@@ -276,7 +283,7 @@ int run(support::Program& program) {
   const vn::ThreadExecutor executor(program.common().threads);
   const vn::FitOptions fit{.seed = program.common().seed, .executor = executor};
   support::Working working("calibrating");
-  const Outcome out = export_arm(o, robot, chain, fit);
+  const Outcome out = export_arm(o, robot, chain, fit, working);
   working.finish();
   for (const ExportedFile& file : out.files) vn::write_file(file.path, file.text);
   print(o, robot, out);

@@ -127,6 +127,8 @@ int calibrate_arm(Program& program, const vn::RobotDescription& description, con
   };
   if (o.priors != "default") options.search = search;
   Working working("fitting the error model");
+  const auto watch = [&](const vn::Progress& progress) { working.reach(share_of_fit(progress.generation)); };
+  options.errors.observer = watch;
   vn::IdentifyOptions frames = options.geometry;
   frames.geometry = false;
   std::vector<vn::Framed<vn::DhChain<N>>> designed;

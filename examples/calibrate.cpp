@@ -55,6 +55,7 @@ auto calibrate_with_progress(const support::Program& program, const vn::RobotDes
   auto found =
       calibrate(robot, o, vn::FitOptions{.seed = program.common().seed, .executor = executor, .observer = count});
   o.calibrate.errors.observer = {};
+  o.reached = [](double) {};
   return found;
 }
 

@@ -73,14 +73,17 @@ TEST(EffectSizes, AreFoundWithTheStatedNumberOfPoses) {
   int arms = 0, found = 0;
   for (std::uint64_t seed = 0; arms < 30; seed += 10) {
     ASSERT_LT(seed, 1000U);
-    const BlockChoice* before = choice_of(fitted(robots::ur10(), sizes, compliance_alone, seed).found, Block::elastic);
+    const SimulatedArm now = fitted(robots::ur10(), sizes, compliance_alone, seed);
+    const BlockChoice* before = choice_of(now.found, Block::elastic);
     ASSERT_NE(before, nullptr);
     const Index poses = before->existence.poses;
     if (before->existence.answer == Answer::found) continue;
     ++arms;
     EXPECT_LT(poses, 1000) << "seed " << seed;  // what is suppressed as no evidence speaks for it would need as many
     const SimulatedArm then = fitted(robots::ur10(), sizes, compliance_alone, seed, poses);
-    found += choice_of(then.found, Block::elastic)->existence.answer == Answer::found;
+    const BlockChoice* decided = choice_of(then.found, Block::elastic);
+    ASSERT_NE(decided, nullptr);
+    found += decided->existence.answer == Answer::found;
   }
   EXPECT_GE(found, 17);
   EXPECT_LE(found, 29);

@@ -103,6 +103,11 @@ class ModelSelection {
   VERNIER_API UnknownGroup harmonics(int first, int last) const;
 
  private:
+  /// Whether a group of unknowns exists, beside low orders of harmonics without priors: these pull them towards zero,
+  /// and if they are large, that leaves residuals that look like gears or tilt. Among `many_poses` priors pull little.
+  /// Every arm bends, so deflection need not be told from such functions.
+  /// @param sized          precisions of the priors
+  /// @param with, without  equations solved with the group and without
   VERNIER_API ScoreTest test(Block block, const UnknownGroup& group, const VectorX& sized,
                              const FactorisedEquations& with, const FactorisedEquations& without) const;
   VERNIER_API UnknownGroup unknowns(Index first, Index count) const;

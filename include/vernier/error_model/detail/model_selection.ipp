@@ -179,23 +179,20 @@ VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest s
   return out;
 }
 
-/// Priors pull low orders of harmonics towards zero. If these are large, that leaves residuals that look like gears or
-/// tilt. So they have no priors here. Among many poses the priors pull little. Every arm bends, so deflection need not
-/// be told from such functions.
 VERNIER_IMPL ScoreTest ModelSelection::test(Block block, const UnknownGroup& group, const VectorX& sized,
                                             const FactorisedEquations& with, const FactorisedEquations& without) const {
   const Linearised& at = linearised();
-  VectorX precisions = sized;
   constexpr int low = 3;
   constexpr double none = 1e-6;
+  VectorX precisions = sized;
   bool any = false;
-  for (const Index k : harmonics(1, low))
-    if (std::find(group.begin(), group.end(), k) == group.end() && precisions(k) < suppressing_precision) {
+  if (block != Block::elastic_again && problem.num_validation_poses() < many_poses)
+    for (const Index k : harmonics(1, low)) {
+      if (std::find(group.begin(), group.end(), k) != group.end() || precisions(k) >= suppressing_precision) continue;
       precisions(k) = none;
       any = true;
     }
-  if (!any || block == Block::elastic_again || problem.num_validation_poses() >= many_poses)
-    return score_test(at.system, with, without, sized, at.steps, group, clusters_);
+  if (!any) return score_test(at.system, with, without, sized, at.steps, group, clusters_);
   return score_test(at.system, at.normal, precisions, at.steps, group, clusters_, at.local_steps);
 }
 

@@ -13,9 +13,10 @@
 //   false claims    arms with a claim of hysteresis, tilt or drift; of any effect, if they have none
 //   found           arms with a claim of the effect that they have
 //   stand-ins       arms with a claim of another error of joints, which stands in for theirs or for a part of it
+//   open            arms with an error of joints of which the report says that it may be another one
 //   ratio           noise-free error of the deployed model, over that of the geometry
-//   intervals       95 % intervals of the effect's size that hold it, whether found or not, at arms where nothing else
-//                   was found
+//   intervals       95 % intervals of the effect's size that hold it, whether found or not, at arms whose model has
+//                   nothing else
 //   size            that geometry and frames leave of the effect, median
 //   poses           that would find as much with 80 %, by the reports, median
 
@@ -45,7 +46,7 @@ using vn::Index;
 namespace {
 
 struct Cell {
-  int arms = 0, with_false_claims = 0, found = 0, with_stand_ins = 0, truths = 0, covered = 0;
+  int arms = 0, with_false_claims = 0, found = 0, with_stand_ins = 0, open = 0, truths = 0, covered = 0;
   std::map<std::string, int> claims;
   std::vector<double> ratios;           // noise-free error of the deployed model to that of the geometry
   std::vector<double> decisive, sizes;  // poses that would decide; true sizes [mm]
@@ -158,12 +159,15 @@ void run_arm(const vn::Robot<6>& robot, const std::string& effect, double size, 
   const double of_geometry = error_of(found.models(vn::Stage::geometry).front(), actual, fresh);
   ++cell.arms;
   cell.ratios.push_back(error_of(found.model(), actual, fresh) / of_geometry);
-  bool false_claim = false, its_own = false, stands_in = false, other = false;
+  bool false_claim = false, its_own = false, stands_in = false, open = false, other = false;
   const bool again = std::any_of(found.blocks.begin(), found.blocks.end(),
                                  [](const vn::BlockChoice& block) { return block.block == vn::Block::elastic_again; });
   for (const vn::BlockChoice& block : found.blocks) {
     const vn::Existence& answer = block.existence;
-    if (answer.answer != vn::Answer::found || (again && block.block == vn::Block::elastic)) continue;
+    if (again && block.block == vn::Block::elastic) continue;
+    open = open || answer.look_alike;
+    other = other || (answer.look_alike && block.used && !alone(block.block, effect));
+    if (answer.answer != vn::Answer::found) continue;
     ++cell.claims[vn::traits_of(block.block).key];
     if (is_of(block.block, effect))
       its_own = true;
@@ -174,6 +178,7 @@ void run_arm(const vn::Robot<6>& robot, const std::string& effect, double size, 
   cell.with_false_claims += false_claim;
   cell.found += its_own;
   cell.with_stand_ins += stands_in;
+  cell.open += open;
   if (other) return;  // it leaves less of the effect
   for (const vn::BlockChoice& block : found.blocks) {
     const vn::Existence& answer = block.existence;
@@ -200,8 +205,9 @@ int main(int argc, char** argv) try {
   std::vector<Index> poses;
   for (int k = 4; k < argc; ++k) poses.push_back(std::atoi(argv[k]));
   if (poses.empty()) poses = {60, 120, 300};
-  std::printf("%-10s %5s | %5s %12s %5s %9s | %12s %11s | %9s %9s %6s | claims\n", "arm", "poses", "arms",
-              "false claims", "found", "stand-ins", "median ratio", "worst ratio", "intervals", "size [mm]", "poses");
+  std::printf("%-10s %5s | %5s %12s %5s %9s %4s | %12s %11s | %9s %9s %6s | claims\n", "arm", "poses", "arms",
+              "false claims", "found", "stand-ins", "open", "median ratio", "worst ratio", "intervals", "size [mm]",
+              "poses");
   for (const auto& [name, robot] :
        {std::pair{"UR10", vn::robots::ur10()}, std::pair{"IRB 120", vn::robots::abb_irb120()}})
     for (const Index n : poses) {
@@ -209,8 +215,8 @@ int main(int argc, char** argv) try {
       for (int arm = 0; arm < arms; ++arm)
         run_arm(robot, effect, size, n, 1000003 * static_cast<std::uint64_t>(n) + 10 * static_cast<std::uint64_t>(arm),
                 cell);
-      std::printf("%-10s %5ld | %5d %12d %5d %9d | %12.4f %11.4f | %2d of %-3d %9.4f %6.0f |", name,
-                  static_cast<long>(n), cell.arms, cell.with_false_claims, cell.found, cell.with_stand_ins,
+      std::printf("%-10s %5ld | %5d %12d %5d %9d %4d | %12.4f %11.4f | %2d of %-3d %9.4f %6.0f |", name,
+                  static_cast<long>(n), cell.arms, cell.with_false_claims, cell.found, cell.with_stand_ins, cell.open,
                   median(cell.ratios), *std::max_element(cell.ratios.begin(), cell.ratios.end()), cell.covered,
                   cell.truths, median(cell.sizes), median(cell.decisive));
       for (const auto& [key, count] : cell.claims) std::printf(" %s %d", key.c_str(), count);

@@ -123,5 +123,55 @@ TEST(EffectSizes, OfHarmonicsAreNoneOfGears) {
   EXPECT_LE(doubtful, 1);
 }
 
+/// How often a kind of joint errors is claimed, and how often it is left open which of them an arm has.
+struct Claims {
+  int own = 0, other = 0, open = 0;
+};
+
+Claims claims_of(const JointErrorSizes& sizes, Block own) {
+  Claims out;
+  for (std::uint64_t arm = 0; arm < 12; ++arm) {
+    const SimulatedArm one = fitted(robots::ur10(), sizes, {.drift = false}, 120000360 + 10 * arm, 120);
+    bool is_own = false, other = false, open = false;
+    const bool again = choice_of(one.found, Block::elastic_again) != nullptr;
+    for (const BlockChoice& choice : one.found.blocks) {
+      if (again && choice.block == Block::elastic) continue;
+      const Block block = choice.block == Block::elastic_again ? Block::elastic : choice.block;
+      if (block != Block::elastic && block != Block::jointwise && block != Block::gears) continue;
+      const bool claimed = choice.existence.answer == Answer::found;
+      is_own = is_own || (claimed && block == own);
+      other = other || (claimed && block != own);
+      open = open || choice.existence.look_alike;
+      if (choice.existence.look_alike) {
+        EXPECT_EQ(choice.existence.answer, Answer::undecided);
+        EXPECT_EQ(choice.existence.interval[0], 0);
+      }
+    }
+    out.own += is_own;
+    out.other += other;
+    out.open += open;
+  }
+  return out;
+}
+
+// Harmonics of which the poses do not show all look like gears or deflection. Without a comparison three of these arms
+// have claims of them.
+TEST(EffectSizes, LookAlikesOfHarmonicsAreNotClaimed) {
+  JointErrorSizes sizes = no_errors;
+  sizes.harmonic = 0.02e-3;
+  const Claims claims = claims_of(sizes, Block::jointwise);
+  EXPECT_GE(claims.own, 8);
+  EXPECT_LE(claims.other, 1);
+  EXPECT_GE(claims.open, 2);
+}
+
+TEST(EffectSizes, ADeflectionIsToldFromGearsAndHarmonics) {
+  JointErrorSizes sizes = no_errors;
+  sizes.compliance = 0.02e-3;
+  const Claims claims = claims_of(sizes, Block::elastic);
+  EXPECT_GE(claims.own, 10);
+  EXPECT_LE(claims.other, 2);
+}
+
 }  // namespace
 }  // namespace vernier::effect_sizes_test

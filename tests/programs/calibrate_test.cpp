@@ -113,9 +113,9 @@ TEST(Calibrate, JsonHasTheStatedMembers) {
     EXPECT_EQ(keys(learner), (std::vector<std::string>{"stage", "used", "left_out_without_mm", "left_out_with_mm"}));
   ASSERT_FALSE(c.json.at("blocks").empty());
   for (const Json& block : c.json.at("blocks"))
-    EXPECT_EQ(keys(block),
-              (std::vector<std::string>{"name", "used", "left_out_without_mm", "left_out_with_mm", "answer", "p",
-                                        "size_mm", "interval_mm", "relevant_mm", "poses_to_decide", "tightness"}));
+    EXPECT_EQ(keys(block), (std::vector<std::string>{"name", "used", "left_out_without_mm", "left_out_with_mm",
+                                                     "answer", "look_alike", "p", "size_mm", "interval_mm",
+                                                     "relevant_mm", "poses_to_decide", "tightness"}));
   ASSERT_EQ(c.json.at("spectrum").size(), 6u);
   for (const Json& joint : c.json.at("spectrum")) {
     EXPECT_EQ(joint.at("orders").size(), joint.at("amplitudes_urad").size());

@@ -169,9 +169,14 @@ VERNIER_LOCAL std::string describe_choice(const CalibrationReport& report) {
     return [answer](const BlockChoice& block) { return block.existence.answer == answer && !block.used; };
   };
   // the drift of a session is part of no model
-  list(". Included: ", [](const BlockChoice& block) {
-    return block.used && block.block != Block::drift && block.block != Block::joint_drift;
-  });
+  const auto included = [](bool look_alike) {
+    return [look_alike](const BlockChoice& block) {
+      return block.used && block.existence.look_alike == look_alike && block.block != Block::drift &&
+             block.block != Block::joint_drift;
+    };
+  };
+  list(". Included: ", included(false));
+  list(". Included, though these poses cannot tell it from other errors of joints: ", included(true));
   list(". Found, but not deployed, because they predict left-out poses worse: ", answered(Answer::found));
   list(". Ruled out, as too small to matter: ", answered(Answer::ruled_out));
   list(". Undecided, since the poses are too few: ", answered(Answer::undecided));
@@ -224,6 +229,12 @@ VERNIER_LOCAL std::string describe_block(const BlockChoice& block) {
       break;
     case Answer::ruled_out: out += message("ruled out above ", mm(effect.interval[1]), " mm at the tool"); break;
     case Answer::undecided:
+      if (effect.look_alike) {
+        out += message(
+            "undecided, because these poses cannot tell it from other errors of joints. In place of them it has ",
+            mm(effect.size), " mm at the tool (p = ", brief(effect.p), "); ", block.used ? "included" : "left out");
+        break;
+      }
       out += message("undecided (p = ", brief(effect.p), "): below ", mm(effect.interval[1]), " mm at the tool, ",
                      mm(effect.relevance), " mm would matter; ",
                      effect.poses > 0 ? message("about ", effect.poses, " poses would decide")

@@ -37,9 +37,10 @@ struct Existence {
   double p = 1;                      ///< probability of such data without the effect
   double size = 0;                   ///< most likely [m]
   std::array<double, 2>
-      interval{};        ///< holds it with 95 %; its end is the upper limit of an effect that was not found [m]
-  double relevance = 0;  ///< from which size on it matters [m]
-  Index poses = 0;       ///< with that many, an effect of that size is found with 80 %; 0 if never
+      interval{};           ///< holds it with 95 %; its end is the upper limit of an effect that was not found [m]
+  double relevance = 0;     ///< from which size on it matters [m]
+  Index poses = 0;          ///< with that many, an effect of that size is found with 80 %; 0 if never
+  bool look_alike = false;  ///< whether it is undecided because another error of the joints may be there in its place
 };
 
 /// The answer on an effect.

@@ -13,6 +13,7 @@
 #include "vernier/error_model/detail/expected_terms.hpp"
 #include "vernier/error_model/detail/gravity_direction.hpp"
 #include "vernier/error_model/detail/line_search.hpp"
+#include "vernier/error_model/detail/look_alikes.hpp"
 #include "vernier/error_model/detail/model_selection.hpp"
 #include "vernier/error_model/detail/prior_transfer.hpp"
 #include "vernier/error_model/detail/stated_payloads.hpp"
@@ -118,6 +119,10 @@ class ErrorModelFit {
     jointwise_ = bent || harmonics_ || has_gears();
     reach(3);
     if (jointwise_) size_again(search);
+    JointTerms all = linear;
+    all.transmission = periodic.transmission;
+    all.straightness = problem_.arm.terms().straightness;
+    compare_look_alikes(model_, all);
     out_.stages.push_back({Stage::jointwise, jointwise_, arms()});
   }
 

@@ -31,6 +31,7 @@ VERNIER_IMPL nlohmann::ordered_json to_json(const CalibrationReport& report, con
                       {"left_out_without_mm", block.without * 1e3},
                       {"left_out_with_mm", block.with * 1e3},
                       {"answer", name_of(block.existence.answer)},
+                      {"look_alike", block.existence.look_alike},
                       {"p", block.existence.p},
                       {"size_mm", block.existence.size * 1e3},
                       {"interval_mm", {block.existence.interval[0] * 1e3, block.existence.interval[1] * 1e3}},

@@ -65,6 +65,22 @@ TEST(EffectSizes, IntervalsOfADeflectionHoldIt) {
   EXPECT_GE(held, 16);
 }
 
+// An effect that has no look-alike among the options is none, however weak it is.
+TEST(EffectSizes, OneKindAloneHasNoLookAlike) {
+  JointErrorSizes sizes = no_errors;
+  sizes.compliance = 6e-6;
+  int found = 0;
+  for (std::uint64_t arm = 0; arm < 20; ++arm) {
+    const SimulatedArm one = fitted(robots::ur10(), sizes, compliance_alone, 10 * arm);
+    const BlockChoice* elastic = choice_of(one.found, Block::elastic);
+    ASSERT_NE(elastic, nullptr);
+    EXPECT_FALSE(elastic->existence.look_alike) << "arm " << arm;
+    found += elastic->existence.answer == Answer::found;
+  }
+  EXPECT_GE(found, 5);
+  EXPECT_LE(found, 19);
+}
+
 // A number of poses that would decide finds an effect of that size with 80 %: on 17 to 29 of 30 arms in 99.6 % of
 // cases.
 TEST(EffectSizes, AreFoundWithTheStatedNumberOfPoses) {

@@ -39,7 +39,7 @@ struct Existence {
   std::array<double, 2>
       interval{};           ///< holds it with 95 %; its end is the upper limit of an effect that was not found [m]
   double relevance = 0;     ///< from which size on it matters [m]
-  Index poses = 0;          ///< with that many, an effect of that size is found with 80 %; 0 if never
+  Index poses = 0;          ///< with that many, an effect of that size is found with 80 %; 0 if never, or not known
   bool look_alike = false;  ///< whether it is undecided because another error of the joints may be there in its place
 };
 

@@ -14,6 +14,10 @@ namespace vernier::detail {
 struct LookAlike {
   BlockChoice* found = nullptr;          ///< its choice, if it was found
   std::vector<UnknownGroup> unknowns{};  ///< those whose sizes have a common factor
+  /// Whether it has unknowns: options may switch it off.
+  VERNIER_LOCAL bool possible() const {
+    return std::any_of(unknowns.begin(), unknowns.end(), [](const UnknownGroup& group) { return !group.empty(); });
+  }
 };
 
 /// The last decision on deflection, functions of joints and gears, where that says that they exist.
@@ -50,7 +54,8 @@ VERNIER_IMPL void compare_look_alikes(ModelSelection& model, const JointTerms& a
   const Index values = model.problem.measured_values();
   /// Learns the sizes of all kinds but one.
   /// @return logarithm of their evidence
-  const auto learn = [&](const LookAlike* absent, int iterations, VectorX& sizes) {
+  const auto learn = [&](const LookAlike* absent, VectorX& sizes) {
+    constexpr int iterations = 8;
     std::vector<UnknownGroup> groups;
     for (const LookAlike& kind : kinds)
       for (const UnknownGroup& group : kind.unknowns) {
@@ -62,13 +67,14 @@ VERNIER_IMPL void compare_look_alikes(ModelSelection& model, const JointTerms& a
     return log_evidence(at.normal, FactorisedEquations(at.normal, sizes, at.steps, at.local_steps), sizes, at.steps,
                         values, at.local_steps);
   };
-  const double of_all = learn(nullptr, 8, precisions);
+  const bool alone = std::count_if(kinds.begin(), kinds.end(), [](const LookAlike& one) { return one.possible(); }) < 2;
+  const double of_all = learn(nullptr, precisions);
   for (const LookAlike& kind : kinds) {
-    if (kind.found == nullptr) continue;
+    if (alone || kind.found == nullptr) continue;
     VectorX others = precisions;
     constexpr double strong = 3;  // a factor of 20
     Existence& existence = kind.found->existence;
-    existence.look_alike = !(of_all - learn(&kind, 8, others) > strong);
+    existence.look_alike = !(of_all - learn(&kind, others) > strong);
     if (!existence.look_alike) continue;
     existence.answer = Answer::undecided;
     existence.interval[0] = 0;

@@ -116,6 +116,34 @@ TEST(ScoreTest, FindsWhatIsThere) {
   EXPECT_GE(rate(0.005, 20, 0, 2), 0.9);  // a large effect is no noise
 }
 
+// Half of the unknowns move positions alone, the others what is no position, whose noise is half as large. Squares of
+// estimates over their variances have a mean of 1, within 3.5 standard deviations of 400 and 600 of them. One variance
+// for both would give 1.6 and 0.4.
+TEST(ScoreTest, KnowsTheNoiseOfPositionsFromThatOfOtherValues) {
+  double positions = 0, others = 0, of_positions = 0, of_others = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    RandomBlocks blocks = noisy(40, seed, 0, 0);
+    for (auto& rows : blocks.rows)
+      for (Index r = 0; r < 6; ++r) {
+        rows.factor(r, r < 3 ? 2 : 0) = 0;
+        if (r >= 3) rows.residual(r) *= 0.5;
+      }
+    const ScoreTest found = tested(blocks, 1e-3);
+    for (Index k = 0; k < found.estimates.size(); ++k) {
+      double share = 0;
+      for (Index j = 0; j < 4; ++j) share += found.directions(j, k) * found.directions(j, k);
+      const double square = found.estimates(k) * found.estimates(k) / found.variances(k);
+      positions += share * square;
+      others += (1 - share) * square;
+      of_positions += share;
+      of_others += 1 - share;
+    }
+  }
+  EXPECT_NEAR(of_positions, 400, 1e-6);
+  EXPECT_NEAR(positions / of_positions, 1, 0.25);
+  EXPECT_NEAR(others / of_others, 1, 0.2);
+}
+
 // Ten equal readings of each of six poses are six pieces of evidence.
 TEST(ScoreTest, ReadingsOfAPoseAreNoEvidenceOfTheirOwn) {
   std::vector<Index> clusters;

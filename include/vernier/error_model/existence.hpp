@@ -6,6 +6,7 @@
 
 #include <array>
 #include <string_view>
+#include <vector>
 
 #include "vernier/least_squares/score_test.hpp"
 
@@ -48,7 +49,10 @@ struct Existence {
 /// @param level     of the test: up to that p it exists
 /// @param relevance from which size on it matters [m]
 /// @param poses     number of poses
-VERNIER_API Existence existence(const ScoreTest& score, double level, double relevance, Index poses);
+/// @param shapes    relative sizes that the unknowns may have, of those that are tested; empty: equal ones alone. Which
+///                  shape it is the data decide, and so the size has less of what noise alone shows in many unknowns.
+VERNIER_API Existence existence(const ScoreTest& score, double level, double relevance, Index poses,
+                                const std::vector<VectorX>& shapes = {});
 
 }  // namespace vernier
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "vernier/core/detail/dense.hpp"
@@ -25,50 +26,58 @@ struct Moments {
   }
 };
 
-/// Squared sizes of an effect [m^2], as the data leave them: a mixture over the variance of its coefficients, whose
-/// root has a uniform prior.
+/// Estimates of an effect along directions in which they are independent.
+struct EffectEstimates {
+  VectorX estimates, variances;
+  MatrixX displacement;  ///< mean squared displacement, a quadratic form [m^2]
+  double rest = 0;       ///< squares of estimates along directions that are left out, over their variances
+};
+
+/// Directions of unknowns that are expected to have other sizes.
+/// @param sizes of the tested unknowns, relative
+VERNIER_LOCAL EffectEstimates reshaped(const ScoreTest& score, const VectorX& sizes) {
+  const MatrixX in_units = rows_scaled(sizes, score.directions);
+  const VectorX information = VERNIER_LATER(score.variances).cwiseInverse();
+  const MatrixX weighted = columns_scaled(in_units, information);
+  const SymmetricEigen turned = symmetric_eigen(matrix_product(weighted, MatrixX(in_units.transpose())));
+  const Index m = turned.values.size();
+  std::vector<Index> kept;
+  for (Index k = m; k-- > 0 && turned.values(k) > 1e-9 * turned.values(m - 1);) kept.push_back(k);
+  const MatrixX vectors = columns_of(turned.vectors, kept);
+  EffectEstimates out{transposed_product(vectors, product(weighted, score.estimates)), VectorX(kept.size()), {}};
+  out.rest = weighted_square(information, score.estimates);
+  for (Index k = 0; k < out.variances.size(); ++k) {
+    const double of_data = turned.values(kept[static_cast<std::size_t>(k)]);
+    out.variances(k) = 1 / of_data;
+    out.rest = (std::max)(0.0, out.rest - out.estimates(k) * out.estimates(k) / of_data);
+    out.estimates(k) /= of_data;
+  }
+  const MatrixX back = transposed_matrix_product(in_units, vectors);
+  out.displacement = transposed_matrix_product(back, matrix_product(score.displacement, back));
+  return out;
+}
+
+/// Squared sizes of an effect [m^2], as the data leave them: a mixture over shapes of its spectrum and over the
+/// variance of its coefficients. All shapes are as likely, and so are all sizes. The scale of the noise is known like
+/// that from some residuals; many estimates tell it better.
 class SizeOfEffect {
  public:
-  VERNIER_LOCAL explicit SizeOfEffect(const ScoreTest& score) {
-    const Index m = score.information.size();
-    double largest = 0;  // that the estimates suggest
-    for (Index k = 0; k < m; ++k)
-      largest = (std::max)(largest, std::abs(score.estimates(k)) + 3 * std::sqrt(score.noise / score.information(k)));
-    // from a hundredth of the least that can be seen; a direction that nothing determines suggests nothing
-    const double least = 1e-2 * std::sqrt(score.noise / score.information(0));
-    constexpr int grid = 120;
-    const double step = std::pow((std::max)(largest / least, 10.0), 1.0 / grid);
-    double highest = -1e300;
-    std::vector<double> logs;
-    double tau = least;
-    for (int i = 0; i <= grid; ++i, tau *= step) {
-      double log_likelihood = std::log(tau);  // the grid is logarithmic
-      VectorX at(m), spread(m);               // of each direction: mean and variance
-      for (Index k = 0; k < m; ++k) {
-        const double of_data = score.noise / score.information(k), total = tau * tau + of_data;
-        log_likelihood -= 0.5 * (std::log(total / of_data) + score.estimates(k) * score.estimates(k) / total);
-        at(k) = tau * tau / total * score.estimates(k);
-        spread(k) = tau * tau / total * of_data;
-      }
-      parts_.push_back(moments_of(score.displacement, at, spread));
-      logs.push_back(log_likelihood);
-      highest = (std::max)(highest, log_likelihood);
-    }
-    double sum = 0;
-    for (const double value : logs) {
-      weights_.push_back(std::exp(value - highest));
+  VERNIER_LOCAL SizeOfEffect(const ScoreTest& score, const std::vector<VectorX>& shapes) {
+    std::vector<EffectEstimates> effects{{score.estimates, score.variances, score.displacement}};
+    for (const VectorX& shape : shapes) effects.push_back(reshaped(score, shape));
+    freedom_ = residuals + static_cast<double>(score.estimates.size());
+    std::vector<Part> all;
+    for (const EffectEstimates& effect : effects) add(effect, all);
+    double highest = -1e300, sum = 0;
+    for (const Part& part : all) highest = (std::max)(highest, part.log_weight);
+    constexpr double negligible = -15;
+    for (const Part& part : all) {
+      if (part.log_weight - highest < negligible) continue;
+      parts_.push_back(moments_of(part));
+      weights_.push_back(std::exp(part.log_weight - highest));
       sum += weights_.back();
     }
     for (double& weight : weights_) weight /= sum;
-  }
-
-  /// Moments of a quadratic form of independent normal numbers.
-  VERNIER_LOCAL static Moments moments_of(const MatrixX& form, const VectorX& mean, const VectorX& variance) {
-    const VectorX image = product(form, mean);
-    Moments out{image.dot(mean) + diagonal_of(form).dot(variance), 4 * weighted_square(variance, image)};
-    for (Index j = 0; j < form.cols(); ++j)
-      for (Index i = 0; i < form.rows(); ++i) out.variance += 2 * form(i, j) * form(i, j) * variance(i) * variance(j);
-    return out;
   }
 
   /// The value that is exceeded with a probability.
@@ -85,6 +94,63 @@ class SizeOfEffect {
   }
 
  private:
+  static constexpr double residuals = 30;  ///< that the scale of the noise is known from
+
+  /// One size of the coefficients.
+  struct Part {
+    const EffectEstimates* effect;
+    double tau;         ///< standard deviation of a coefficient, over that of the noise
+    double squares;     ///< of what is seen, over its variances
+    double log_weight;  ///< logarithm of its likelihood and prior
+  };
+
+  /// Adds the sizes of one shape.
+  VERNIER_LOCAL void add(const EffectEstimates& effect, std::vector<Part>& out) const {
+    const Index m = effect.estimates.size();
+    double largest = 0, least = (std::numeric_limits<double>::max)();  // that the estimates suggest
+    for (Index k = 0; k < m; ++k) {
+      const double std = std::sqrt(effect.variances(k));
+      largest = (std::max)(largest, std::abs(effect.estimates(k)) + 3 * std);
+      least = (std::min)(least, 1e-2 * std);  // a direction that nothing determines suggests nothing
+    }
+    constexpr int grid = 120;
+    const double step = std::pow((std::max)(largest / least, 10.0), 1.0 / grid);
+    const double size = std::sqrt(diagonal_of(effect.displacement).sum()) * std::log(step);
+    double tau = least;
+    for (int i = 0; i <= grid; ++i, tau *= step) {
+      double squares = residuals + effect.rest, log_weight = std::log(tau * size);  // the grid is logarithmic
+      for (Index k = 0; k < m; ++k) {
+        const double total = tau * tau + effect.variances(k);
+        log_weight -= 0.5 * std::log(total / effect.variances(k));
+        squares += effect.estimates(k) * effect.estimates(k) / total;
+      }
+      out.push_back({&effect, tau, squares, log_weight - 0.5 * freedom_ * std::log(squares)});
+    }
+  }
+
+  /// Moments of the squared size: of a quadratic form of normal numbers, whose variances have a common factor that is
+  /// known like that of the noise.
+  VERNIER_LOCAL Moments moments_of(const Part& part) const {
+    const MatrixX& form = part.effect->displacement;
+    const double noise = part.squares / (freedom_ - 2);
+    const VectorX& of_data = part.effect->variances;
+    const Index m = of_data.size();
+    VectorX mean(m), variance(m);  // of each direction
+    for (Index k = 0; k < m; ++k) {
+      const double share = part.tau * part.tau / (part.tau * part.tau + of_data(k));
+      mean(k) = share * part.effect->estimates(k);
+      variance(k) = noise * share * of_data(k);
+    }
+    const VectorX image = product(form, mean);
+    const double of_variance = diagonal_of(form).dot(variance);
+    Moments out{image.dot(mean) + of_variance,
+                4 * weighted_square(variance, image) + 2 * of_variance * of_variance / (freedom_ - 4)};
+    for (Index j = 0; j < m; ++j)
+      for (Index i = 0; i < m; ++i) out.variance += 2 * form(i, j) * form(i, j) * variance(i) * variance(j);
+    return out;
+  }
+
+  double freedom_ = residuals;
   std::vector<Moments> parts_{};
   std::vector<double> weights_{};
 };
@@ -111,11 +177,12 @@ VERNIER_LOCAL double power(const ScoreTest& score, double level, double size2, d
 
 }  // namespace detail
 
-VERNIER_IMPL Existence existence(const ScoreTest& score, double level, double relevance, Index poses) {
+VERNIER_IMPL Existence existence(const ScoreTest& score, double level, double relevance, Index poses,
+                                 const std::vector<VectorX>& shapes) {
   Existence out{.p = score.p, .relevance = relevance};
   const double moved2 = detail::diagonal_of(score.displacement).sum();  // by one expected size of all
   if (score.information.size() == 0 || !(moved2 > 0) || !std::isfinite(relevance)) return out;
-  const detail::SizeOfEffect squares(score);
+  const detail::SizeOfEffect squares(score, shapes);
   const auto size_exceeded_with = [&](double probability) { return std::sqrt(squares.exceeded_with(probability)); };
   out.size = size_exceeded_with(0.5);
   const double size2 = relevance * relevance / moved2;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -81,6 +82,15 @@ struct Scores {
   VectorX sum;            ///< of the scores as they are
   MatrixX displacements;  ///< sum of squared displacements of all positions, a quadratic form of the columns [m^2]
   Index positions = 0;    ///< blocks with positions
+  MatrixX of_positions;   ///< information that positions have, of some blocks
+  double counted = 0;     ///< share of the blocks in that
+  /// Residuals of positions, and of all other values.
+  struct Residuals {
+    double left_out = 0;  ///< sum of squares of those that are flipped
+    double mixed = 0;     ///< sum of their products with the residuals as fitted
+    Index values = 0;
+  };
+  std::array<Residuals, 2> residuals{};
 };
 
 /// Residual of a block at the solution.
@@ -147,7 +157,8 @@ VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at
   for (std::size_t k = 0; k < at.others.size(); ++k)
     if (precisions(at.others[k]) > 0) informed.push_back(static_cast<Index>(k));
   const auto of_data = static_cast<Index>(columns.size());
-  Scores out{MatrixX::Zero(m, of_data + static_cast<Index>(informed.size())), VectorX::Zero(m), MatrixX::Zero(m, m)};
+  Scores out{MatrixX::Zero(m, of_data + static_cast<Index>(informed.size())), VectorX::Zero(m), MatrixX::Zero(m, m), 0,
+             MatrixX::Zero(m, m)};
 
   constexpr Index many = 500;  // exact where there are few poses; among many the mean leverage is that of each
   const bool exact = system.blocks < many;
@@ -159,12 +170,16 @@ VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at
     for (const std::vector<Index>& blocks : members) leave_out_cluster(system, with, blocks, left_out);
   }
   Rows6 all(6, system.unknowns()), others(6, rest), tested(6, m);
+  const Index stride = 1 + system.blocks / many;  // of those whose positions count
+  out.counted = 1 / static_cast<double>(stride);
+  const auto top_of = [](const Rows6& rows) -> MatrixX { return rows.topRows<3>(); };
   constexpr Index batch = 64;
   MatrixX waiting(3 * batch, m);  // displacements of positions
   visit_blocks(system, 0, 1, system.blocks, [&](Index b, const RowBlock& rows) {
     rows.expand(system.group_sizes, all);
     const Vector6 residual = residual_of(system, at.solved, rows, all);
-    Vector6 noise = mean * residual_of(system, with, rows, all);
+    const Vector6 fitted = residual_of(system, with, rows, all);
+    Vector6 noise = mean * fitted;
     if (exact) std::copy_n(&left_out(0, b), 6, noise.data());
     if (system.local_states > 0) at.solved.eliminate_local(rows, all);
     for (Index k = 0; k < rest; ++k) std::copy_n(&all(0, at.others[static_cast<std::size_t>(k)]), 6, &others(0, k));
@@ -172,6 +187,14 @@ VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at
     add_product(tested, others, at.taken_over, -1);
     out.flipped.col(columns.at(cluster_of(b))) += transposed_product(tested, noise);
     out.sum += transposed_product(tested, residual);
+    for (Index r = 0; r < 6; ++r) {
+      if (!(std::abs(fitted(r)) > 0)) continue;  // no value
+      Scores::Residuals& kind = out.residuals[r < 3 ? 0 : 1];
+      kind.left_out += noise(r) * noise(r);
+      kind.mixed += noise(r) * fitted(r);
+      ++kind.values;
+    }
+    if (b % stride == 0) add_transposed_product(out.of_positions, top_of(tested), top_of(tested));
     if (b >= system.validation_blocks) return;
     const Index row = 3 * (out.positions % batch);
     for (Index k = 0; k < m; ++k) {
@@ -191,6 +214,28 @@ VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at
     out.flipped.col(of_data + static_cast<Index>(i)) = pulled(with);
     out.sum += pulled(at.solved);
   }
+  return out;
+}
+
+/// Variances of the estimates along directions. Scores of clusters have their scale; the residuals of positions and of
+/// other values have what differs between directions.
+/// @param information of each direction
+/// @param noise       variance of the whitened residuals, as the flipped scores have it
+VERNIER_LOCAL VectorX variances_of(const Scores& scores, const MatrixX& directions, const VectorX& information,
+                                   double noise) {
+  auto [positions, others] = scores.residuals;
+  if (positions.values == 0) positions = others;
+  if (others.values == 0) others = positions;
+  const VectorX of_positions =
+      diagonal_of(transposed_matrix_product(directions, matrix_product(scores.of_positions, directions)));
+  const auto mixed = [&](double share, double a, double b) {
+    const double bounded = std::clamp(share / scores.counted, 0.0, 1.0);
+    return bounded * a / static_cast<double>(positions.values) + (1 - bounded) * b / static_cast<double>(others.values);
+  };
+  const double flipped = mixed(of_positions.sum() / information.sum(), positions.left_out, others.left_out);
+  VectorX out(information.size());
+  for (Index k = 0; k < out.size(); ++k)
+    out(k) = noise / information(k) * mixed(of_positions(k) / information(k), positions.mixed, others.mixed) / flipped;
   return out;
 }
 
@@ -250,9 +295,11 @@ VERNIER_IMPL ScoreTest score_test(const BlockSystem& system, const FactorisedEqu
   }
   std::vector<Index> descending;
   for (Index k = m; k-- > first;) descending.push_back(k);
-  const MatrixX determined = detail::columns_of(directions.vectors, descending);
+  out.tested = at.tested;
+  out.directions = detail::columns_of(directions.vectors, descending);
+  out.variances = detail::variances_of(scores, out.directions, out.information, out.noise);
   out.displacement =
-      detail::transposed_matrix_product(determined, detail::matrix_product(scores.displacements, determined));
+      detail::transposed_matrix_product(out.directions, detail::matrix_product(scores.displacements, out.directions));
   out.displacement *= 1 / static_cast<double>((std::max)(Index{1}, scores.positions));
   VectorX weights(m);
   for (Index k = 0; k < m; ++k) weights(k) = 1 / std::sqrt((std::max)(directions.values(k), 0.0) + score_precision);

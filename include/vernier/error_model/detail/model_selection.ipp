@@ -158,6 +158,19 @@ VERNIER_IMPL UnknownGroup ModelSelection::of_kinds(std::initializer_list<JointTe
   return out;
 }
 
+VERNIER_IMPL std::vector<VectorX> ModelSelection::shapes_of(Block block, const ScoreTest& score) const {
+  if (block != Block::jointwise) return {};
+  const auto geometric = static_cast<Index>(problem.arm.geometric().size());
+  VectorX shape = VectorX::Ones(problem.arm.size());
+  for (const JointTermBlock& row : problem.arm.terms().blocks())
+    for (Index k = 0; row.joint >= 0 && k < row.count; ++k)
+      shape(geometric + row.begin + k) =
+          1.0 / problem.arm.terms().transmission[static_cast<std::size_t>(row.joint)].order(k);
+  VectorX tested(static_cast<Index>(score.tested.size()));
+  for (Index k = 0; k < tested.size(); ++k) tested(k) = shape(score.tested[static_cast<std::size_t>(k)]);
+  return {tested, VERNIER_LATER(tested).cwiseAbs2()};
+}
+
 VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest score, const VectorX& with,
                                                         const VectorX& without, double precision) const {
   constexpr double looks = 12, level = 0.05 / looks;  // at one arm
@@ -167,11 +180,12 @@ VERNIER_IMPL BlockChoice ModelSelection::choice_between(Block block, ScoreTest s
       options_.relevant_size > 0 ? options_.relevant_size : (std::max)(0.1 * without.mean(), sigma);
   const Index poses = problem.num_validation_poses();
   BlockChoice out{block, without.mean(), with.mean(), false, suppressing_precision, {}};
-  out.existence = existence(score, level, relevance, poses);
+  const std::vector<VectorX> shapes = shapes_of(block, score);
+  out.existence = existence(score, level, relevance, poses, shapes);
   if (out.existence.answer == Answer::found && !(precision < nothing)) {
     constexpr double never = 0;  // is it found; the number of poses that would decide stays
     const Index decisive = out.existence.poses;
-    out.existence = existence(score, never, relevance, poses);
+    out.existence = existence(score, never, relevance, poses, shapes);
     out.existence.poses = decisive;
   }
   out.used = out.existence.answer == Answer::found && !predicts_worse(with, without);
@@ -220,7 +234,8 @@ VERNIER_IMPL void ModelSelection::measure_again(Block block, const UnknownGroup&
   const VectorX precisions = problem.arm.precisions();
   const ScoreTest score = score_test(at.system, at.normal, precisions, at.steps, group, clusters_, at.local_steps);
   constexpr double known = 1;  // level at which an effect is found in any case
-  const Existence now = existence(score, known, choice->existence.relevance, problem.num_validation_poses());
+  const Existence now =
+      existence(score, known, choice->existence.relevance, problem.num_validation_poses(), shapes_of(block, score));
   choice->existence.size = now.size;
   choice->existence.interval = now.interval;
 }

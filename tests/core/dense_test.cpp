@@ -67,6 +67,7 @@ TEST(DenseWhiteBox, ProductsScalingsAndSums) {
   EXPECT_EQ(RealMatrix(rows_minus(a, vector({1, 4}))), RealMatrix(3, 2, {0, -2, 2, 0, 4, 2}));
   EXPECT_EQ(RealMatrix(row_of(a, 1)), vector({3, 4}));
   EXPECT_EQ(RealMatrix(rows_of(a, std::vector<Index>{2, 0, 2})), RealMatrix(3, 2, {5, 6, 1, 2, 5, 6}));
+  EXPECT_EQ(RealMatrix(columns_of(a, std::vector<Index>{1, 0})), RealMatrix(3, 2, {2, 1, 4, 3, 6, 5}));
   EXPECT_EQ(RealMatrix(diagonal_of(a)), vector({1, 4}));
   EXPECT_EQ(RealMatrix(diagonal_of(b)), vector({1, 3}));
   EXPECT_EQ(RealMatrix(column_means(a)), vector({3, 4}));

@@ -18,14 +18,6 @@ namespace vernier {
 
 namespace detail {
 
-/// Some columns of a matrix.
-VERNIER_LOCAL MatrixX columns_of(const MatrixX& a, const std::vector<Index>& columns) {
-  MatrixX out(a.rows(), static_cast<Index>(columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k)
-    std::copy_n(a.data() + columns[k] * a.rows(), a.rows(), out.data() + static_cast<Index>(k) * a.rows());
-  return out;
-}
-
 /// The problem without a group of unknowns, solved, and the group's columns less what the others take over.
 struct WithoutGroup {
   const FactorisedEquations& solved;  ///< with the group held at zero

@@ -42,6 +42,8 @@ VERNIER_API MatrixX rows_minus(const ConstMatrixRef& a, const ConstVectorRef& ro
 VERNIER_API VectorX row_of(const ConstMatrixRef& a, Index i);
 /// Some rows, in the order given.
 VERNIER_API MatrixX rows_of(const ConstMatrixRef& a, std::span<const Index> rows);
+/// Some columns, in the order given.
+VERNIER_API MatrixX columns_of(const ConstMatrixRef& a, std::span<const Index> columns);
 /// The diagonal.
 VERNIER_API VectorX diagonal_of(const ConstMatrixRef& a);
 /// Mean of each column.

@@ -108,6 +108,13 @@ VERNIER_IMPL MatrixX rows_of(const ConstMatrixRef& a, std::span<const Index> row
   return out;
 }
 
+VERNIER_IMPL MatrixX columns_of(const ConstMatrixRef& a, std::span<const Index> columns) {
+  MatrixX out(a.rows(), static_cast<Index>(columns.size()));
+  for (Index c = 0; c < out.cols(); ++c)
+    std::copy_n(a.data() + columns[static_cast<std::size_t>(c)] * a.outerStride(), a.rows(), &out(0, c));
+  return out;
+}
+
 VERNIER_IMPL VectorX diagonal_of(const ConstMatrixRef& a) {
   VectorX out((std::min)(a.rows(), a.cols()));
   for (Index k = 0; k < out.size(); ++k) out(k) = a(k, k);

@@ -36,7 +36,7 @@ constexpr std::string_view name_of(Answer answer) {
 struct Existence {
   Answer answer = Answer::untested;  ///< whether it exists
   double p = 1;                      ///< probability of such data without the effect
-  double size = 0;                   ///< most likely [m]
+  double size = 0;                   ///< as likely to be exceeded as not [m]
   std::array<double, 2>
       interval{};           ///< holds it with 95 %; its end is the upper limit of an effect that was not found [m]
   double relevance = 0;     ///< from which size on it matters [m]
@@ -49,8 +49,8 @@ struct Existence {
 /// @param level     of the test: up to that p it exists
 /// @param relevance from which size on it matters [m]
 /// @param poses     number of poses
-/// @param shapes    relative sizes that the unknowns may have, of those that are tested; empty: equal ones alone. Which
-///                  shape it is the data decide, and so the size has less of what noise alone shows in many unknowns.
+/// @param shapes    relative sizes that the unknowns may have, of those that are tested; empty: equal ones alone. The
+///                  data weigh the shapes. Noise in many unknowns then adds less to the size.
 VERNIER_API Existence existence(const ScoreTest& score, double level, double relevance, Index poses,
                                 const std::vector<VectorX>& shapes = {});
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "vernier/core/check.hpp"
 #include "vernier/core/detail/dense.hpp"
 #include "vernier/error_model/detail/size_of_effect.hpp"
 #include "vernier/error_model/existence.hpp"
@@ -37,6 +38,9 @@ VERNIER_LOCAL double power(const ScoreTest& score, double level, double size2, d
 VERNIER_IMPL Existence existence(const ScoreTest& score, double level, double relevance, Index poses,
                                  const std::vector<VectorX>& shapes) {
   Existence out{.p = score.p, .relevance = relevance};
+  for (const VectorX& shape : shapes)
+    demand(shape.size() == score.directions.rows(), "existence: a shape of ", shape.size(), " unknowns, tested are ",
+           score.directions.rows());
   const double moved2 = detail::diagonal_of(score.displacement).sum();  // by one expected size of all
   if (score.information.size() == 0 || !(moved2 > 0) || !std::isfinite(relevance)) return out;
   const detail::SizeOfEffect squares(score, shapes);

@@ -19,7 +19,7 @@ struct ScoreTest {
   /// what the other unknowns take over.
   VectorX information{};
   VectorX estimates{};  ///< of each direction, by least squares
-  VectorX variances{};  ///< of the estimates; positions and other values may be whitened by wrong standard deviations
+  VectorX variances{};  ///< of the estimates; positions and other values each have a noise of their own
   double noise = 1;     ///< variance of the whitened residuals, as the flipped scores have it
   /// Mean squared displacement of the measured positions, less what the other unknowns take over: a quadratic form of
   /// the directions [m^2].
@@ -36,9 +36,9 @@ inline constexpr double score_precision = 10;
 /// without them and less what the other unknowns take over. If they are zero, the sign of each score is as likely as
 /// the opposite one. So the weighted square of their sum is compared with those of flipped signs. That holds for any
 /// symmetric noise, whatever its variance at each pose. The noise is the residual of each pose under a model with the
-/// unknowns that was fitted without its cluster, so no large effect changes it. Where the unknowns are many it is
-/// larger than that of the measurements, which is right for the test alone. So variances of estimates come from its
-/// product with the residual as fitted, whose mean is that of the measurements.
+/// unknowns that was fitted without its cluster, so no large effect changes it. If the unknowns are many, such a
+/// residual is larger than the noise of the measurements. The mean product of a residual left out and as fitted is the
+/// variance of that noise, if it is equal at all poses. Variances of estimates are made of such products.
 /// @param system,normal the problem; the unknowns in question have columns
 /// @param precisions    of independent priors of all unknowns, those of the group as their evidence suggests
 /// @param steps         present values of the unknowns, relative to the means of the priors

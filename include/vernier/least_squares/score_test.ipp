@@ -70,12 +70,13 @@ VERNIER_LOCAL WithoutGroup without_group(const FactorisedEquations& solved, cons
 
 /// Scores of the tested unknowns, a column a cluster, and one for each prior of the others.
 struct Scores {
-  MatrixX flipped;        ///< with residuals of the model with the group: those whose signs are flipped
+  MatrixX flipped;        ///< with residuals of the model with the group, left out: those whose signs are flipped
+  MatrixX fitted;         ///< the same with residuals as fitted
   VectorX sum;            ///< of the scores as they are
   MatrixX displacements;  ///< sum of squared displacements of all positions, a quadratic form of the columns [m^2]
   Index positions = 0;    ///< blocks with positions
   MatrixX of_positions;   ///< information that positions have, of some blocks
-  double counted = 0;     ///< share of the blocks in that
+  double counted = 0;     ///< share of the blocks that `of_positions` has
   /// Residuals of positions, and of all other values.
   struct Residuals {
     double left_out = 0;  ///< sum of squares of those that are flipped
@@ -149,8 +150,8 @@ VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at
   for (std::size_t k = 0; k < at.others.size(); ++k)
     if (precisions(at.others[k]) > 0) informed.push_back(static_cast<Index>(k));
   const auto of_data = static_cast<Index>(columns.size());
-  Scores out{MatrixX::Zero(m, of_data + static_cast<Index>(informed.size())), VectorX::Zero(m), MatrixX::Zero(m, m), 0,
-             MatrixX::Zero(m, m)};
+  const MatrixX none = MatrixX::Zero(m, of_data + static_cast<Index>(informed.size()));
+  Scores out{none, none, VectorX::Zero(m), MatrixX::Zero(m, m), 0, MatrixX::Zero(m, m)};
 
   constexpr Index many = 500;  // exact where there are few poses; among many the mean leverage is that of each
   const bool exact = system.blocks < many;
@@ -178,6 +179,7 @@ VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at
     for (Index k = 0; k < m; ++k) std::copy_n(&all(0, at.tested[static_cast<std::size_t>(k)]), 6, &tested(0, k));
     add_product(tested, others, at.taken_over, -1);
     out.flipped.col(columns.at(cluster_of(b))) += transposed_product(tested, noise);
+    out.fitted.col(columns.at(cluster_of(b))) += transposed_product(tested, fitted);
     out.sum += transposed_product(tested, residual);
     for (Index r = 0; r < 6; ++r) {
       if (!(std::abs(fitted(r)) > 0)) continue;  // no value
@@ -204,30 +206,39 @@ VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at
       return row_of(at.taken_over, k) * (-precisions(unknown) * (steps(unknown) + solved.step()(unknown)));
     };
     out.flipped.col(of_data + static_cast<Index>(i)) = pulled(with);
+    out.fitted.col(of_data + static_cast<Index>(i)) = pulled(with);
     out.sum += pulled(at.solved);
   }
   return out;
 }
 
-/// Variances of the estimates along directions. Scores of clusters have their scale; the residuals of positions and of
-/// other values have what differs between directions.
+/// Variances of the estimates along directions. The scores of clusters give their common scale. The residuals of
+/// positions and of other values give the ratios.
 /// @param information of each direction
-/// @param noise       variance of the whitened residuals, as the flipped scores have it
-VERNIER_LOCAL VectorX variances_of(const Scores& scores, const MatrixX& directions, const VectorX& information,
-                                   double noise) {
+VERNIER_LOCAL VectorX variances_of(const Scores& scores, const MatrixX& directions, const VectorX& information) {
   auto [positions, others] = scores.residuals;
   if (positions.values == 0) positions = others;
   if (others.values == 0) others = positions;
+  const auto mean = [](const Scores::Residuals& kind) {  // few poses may have a sum of products that is negative
+    return (std::max)(kind.mixed, 0.01 * kind.left_out) / static_cast<double>(kind.values);
+  };
+  const auto of = [&](double of_positions, double all) {
+    const double share = std::clamp(of_positions / (scores.counted * all), 0.0, 1.0);
+    return share * mean(positions) + (1 - share) * mean(others);
+  };
   const VectorX of_positions =
       diagonal_of(transposed_matrix_product(directions, matrix_product(scores.of_positions, directions)));
-  const auto mixed = [&](double share, double a, double b) {
-    const double bounded = std::clamp(share / scores.counted, 0.0, 1.0);
-    return bounded * a / static_cast<double>(positions.values) + (1 - bounded) * b / static_cast<double>(others.values);
-  };
-  const double flipped = mixed(of_positions.sum() / information.sum(), positions.left_out, others.left_out);
+  double products = 0, squares = 0;
+  for (Index k = 0; k < scores.flipped.size(); ++k) {
+    products += scores.flipped.data()[k] * scores.fitted.data()[k];
+    squares += scores.flipped.data()[k] * scores.flipped.data()[k];
+  }
+  const double all = information.sum(),
+               scale = (std::max)(products, 0.01 * squares) / all / of(of_positions.sum(), all);
+  constexpr double exact = 1e-12;  // of whitened values; without noise all of this is zero
   VectorX out(information.size());
   for (Index k = 0; k < out.size(); ++k)
-    out(k) = noise / information(k) * mixed(of_positions(k) / information(k), positions.mixed, others.mixed) / flipped;
+    out(k) = (std::max)(exact, scale * of(of_positions(k), information(k))) / information(k);
   return out;
 }
 
@@ -289,7 +300,7 @@ VERNIER_IMPL ScoreTest score_test(const BlockSystem& system, const FactorisedEqu
   for (Index k = m; k-- > first;) descending.push_back(k);
   out.tested = at.tested;
   out.directions = detail::columns_of(directions.vectors, descending);
-  out.variances = detail::variances_of(scores, out.directions, out.information, out.noise);
+  out.variances = detail::variances_of(scores, out.directions, out.information);
   out.displacement =
       detail::transposed_matrix_product(out.directions, detail::matrix_product(scores.displacements, out.directions));
   out.displacement *= 1 / static_cast<double>((std::max)(Index{1}, scores.positions));

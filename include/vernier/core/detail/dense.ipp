@@ -111,7 +111,7 @@ VERNIER_IMPL MatrixX rows_of(const ConstMatrixRef& a, std::span<const Index> row
 VERNIER_IMPL MatrixX columns_of(const ConstMatrixRef& a, std::span<const Index> columns) {
   MatrixX out(a.rows(), static_cast<Index>(columns.size()));
   for (Index c = 0; c < out.cols(); ++c)
-    std::copy_n(a.data() + columns[static_cast<std::size_t>(c)] * a.outerStride(), a.rows(), &out(0, c));
+    std::copy_n(a.data() + columns[static_cast<std::size_t>(c)] * a.outerStride(), a.rows(), out.data() + c * a.rows());
   return out;
 }
 

@@ -79,8 +79,8 @@ class ModelSelection {
   /// @param score of a test of them; none: they are tested beside the unknowns that there are
   /// @return      whether they are in the model
   VERNIER_API bool choose_by_evidence(Block block, const UnknownGroup& group, std::optional<ScoreTest> score = {});
-  /// Relative sizes that tested unknowns may have beside equal ones: harmonics whose amplitudes fall with their order,
-  /// or with its square. None of blocks without harmonics.
+  /// Relative sizes that tested unknowns may have beside equal ones: amplitudes of harmonics, over the expected ones,
+  /// that fall with their order, or with its square. None of blocks without harmonics.
   VERNIER_API std::vector<VectorX> shapes_of(Block block, const ScoreTest& score) const;
   /// A block of unknowns, by its scores and by the left-out errors with it and without.
   VERNIER_API BlockChoice choice_between(Block block, ScoreTest score, const VectorX& with, const VectorX& without,

